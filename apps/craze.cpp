@@ -1,0 +1,9 @@
+#include "craze/core/version.hpp"
+
+#include <cstdio>
+
+int main()
+{
+    std::printf("craze %s\n", craze::version);
+    return 0;
+}

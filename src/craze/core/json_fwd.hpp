@@ -1,0 +1,9 @@
+// For headers that name Json without its weight.
+
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace craze {
+using Json = nlohmann::ordered_json;
+}
