@@ -133,7 +133,8 @@ std::string format_quantity(double value, Dimension dimension)
     }
     // Rounding of the division can hide the short decimal: look for one that parses back.
     for (int digits = 1; digits <= 17; ++digits) {
-        std::string text = fmt::format("{:.{}g}", value / best->factor, digits);
+        const double rounded = std::stod(fmt::format("{:.{}g}", value / best->factor, digits));
+        std::string text = fmt::format("{}", rounded);  // 40, not 4e+01
         if (*best->name != '\0') text += fmt::format(" {}", best->name);
         if (parse_quantity(text, dimension) == value) return text;
     }
