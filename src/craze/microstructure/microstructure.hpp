@@ -1,9 +1,14 @@
-// Which void is a pore, which a crack: the value that `microstructure` gives.
+// Which void is a pore, which a crack: the value that `microstructure` gives, and the door of the room.
 
 #pragma once
 
 #include "craze/core/mask.hpp"
+#include "craze/core/schema.hpp"
 #include "craze/images/gray.hpp"
+#include "craze/microstructure/classification.hpp"
+#include "craze/microstructure/labels.hpp"
+
+#include <filesystem>
 
 namespace craze::microstructure {
 
@@ -15,5 +20,33 @@ struct Microstructure {
     Mask pore;          ///< img. 1c: true = void of a pore
     Mask crack;         ///< img. 2: true = void of a crack; matter, pore and crack fill the volume
 };
+
+enum class ThresholdMethod { moments = 0, otsu = 1, entropy = 2, fixed = 3 };
+
+struct Settings {
+    ThresholdMethod threshold = ThresholdMethod::moments;
+    std::int64_t level = 128;  ///< S of the method `fixed`: void where gray < S
+    double R_C = 8.5;          ///< px, closing radius: what holds this ball is a pore
+    double R_E = 4.5;          ///< px, erosion radius: how far pores are enlarged to regain their outline
+    Border border = Border::open;
+    Connectivity connectivity = Connectivity::corners;
+    double thickness_step = 0.5;  ///< px, between the radii tried for local thickness
+    bool intermediates = false;   ///< write img. 1a and 1b of Fig. 6 too
+    bool figures = true;          ///< write pictures
+};
+
+void describe(Schema& schema, Settings& settings);
+/// @throws InvalidInput  when a value is no choice it could be
+void check(const Settings& settings);
+
+/// Threshold and classification [2.4, Fig. 6].
+/// @throws InvalidInput       when gray is empty, or has a single level and the method needs two
+/// @throws ComputationFailed  when all is void
+Microstructure classify(images::Gray gray, const Settings& settings);
+
+/// `phase.mhd` (255 matter, 0 pore, 128 crack) and `threshold.json` in `folder`. The gray levels stay with `images`.
+void save(const Microstructure& micro, const std::filesystem::path& folder);
+/// @throws InvalidInput  when a file is missing, or the phases and the gray levels differ in shape
+Microstructure load_microstructure(const std::filesystem::path& folder, const std::filesystem::path& images_folder);
 
 }  // namespace craze::microstructure

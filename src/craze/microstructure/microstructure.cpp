@@ -1,0 +1,69 @@
+#include "craze/microstructure/microstructure.hpp"
+
+#include "craze/core/errors.hpp"
+#include "craze/microstructure/classification.hpp"
+#include "craze/microstructure/threshold.hpp"
+
+#include <fmt/format.h>
+
+namespace craze::microstructure {
+
+void describe(Schema& schema, Settings& s)
+{
+    schema.option("threshold", s.threshold, {"moments", "otsu", "entropy", "fixed"},
+                  "how the gray level that parts void from matter is found");
+    schema.integer("level", s.level, {1, 255}, "for the method fixed: void where gray < level");
+    schema.quantity("R_C", s.R_C, Dimension::pixel, {0, 500}, "closing radius: void that holds this ball is a pore");
+    schema.quantity("R_E", s.R_E, Dimension::pixel, {0, 500},
+                    "erosion radius: how far pores are enlarged to regain their outline");
+    schema.option("border", s.border, {"open", "matter"},
+                  "what lies behind the border of the volume: neither matter nor void, or matter");
+    schema.option("connectivity", s.connectivity, {"corners", "edges", "faces"},
+                  "voxels that hang together to one pore or crack: 26, 18 or 6 neighbours");
+    schema.quantity("thickness_step", s.thickness_step, Dimension::pixel, {0.25, 10},
+                    "step of the radii tried for local thickness");
+    schema.flag("intermediates", s.intermediates, "write the closed and the enlarged pores of Fig. 6 too");
+    schema.flag("figures", s.figures, "write pictures");
+}
+
+void check(const Settings& s)
+{
+    if (s.R_E > s.R_C)
+        throw InvalidInput(
+            fmt::format("microstructure.R_E: needs a radius up to R_C ({} px), got {} px; a larger one "
+                        "would take cracks for pores",
+                        s.R_C, s.R_E));
+}
+
+Microstructure classify(images::Gray gray, const Settings& settings)
+{
+    check(settings);
+    if (gray.level.empty()) throw InvalidInput("microstructure: the gray volume is empty");
+    int S = static_cast<int>(settings.level);
+    if (settings.threshold != ThresholdMethod::fixed) {
+        const Histogram levels = histogram(gray.level);
+        const auto found = settings.threshold == ThresholdMethod::moments ? moments_threshold(levels)
+                           : settings.threshold == ThresholdMethod::otsu  ? otsu_threshold(levels)
+                                                                          : entropy_threshold(levels);
+        if (!found)
+            throw InvalidInput(
+                "microstructure.threshold: the volume has one gray level only, no method can part void from matter; "
+                "set threshold = \"fixed\" and level");
+        S = *found;
+    }
+    Microstructure micro;
+    micro.matter = matter_of(gray.level, S);
+    if (micro.matter.count() == 0)
+        throw ComputationFailed(
+            fmt::format("microstructure: all {} voxels are below the threshold {}: no matter is "
+                        "left; is the picture inverted (void must be dark)?",
+                        gray.level.shape().voxels(), S));
+    micro.threshold = S;
+    micro.gray = std::move(gray);
+    Classification c = classified(micro.matter, settings.R_C, settings.R_E, settings.border);
+    micro.pore = std::move(c.pore);
+    micro.crack = std::move(c.crack);
+    return micro;
+}
+
+}  // namespace craze::microstructure
