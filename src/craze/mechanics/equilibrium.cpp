@@ -1,0 +1,232 @@
+#include "craze/mechanics/equilibrium.hpp"
+
+#include "craze/core/errors.hpp"
+#include "craze/core/progress.hpp"
+#include "craze/mechanics/contacts.hpp"
+#include "craze/mechanics/preconditioner.hpp"
+#include "craze/mechanics/stiffness.hpp"
+#include "craze/mechanics/vectors.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace craze::mechanics {
+
+struct EquilibriumSolver::Work {
+    const Lattice& lattice;
+    EquilibriumOptions options;
+    double inv_radius;
+
+    std::vector<domain::BondKind> kind;  ///< those `stiffness` and `contacts` were made for
+    std::optional<Stiffness> stiffness;
+    UnilateralContacts contacts;
+    std::vector<std::uint8_t> closed;  ///< contacts that are springs in `stiffness`
+    std::vector<std::int64_t> imposed;
+    BlockJacobi preconditioner;
+    bool preconditioner_fits = false;
+
+    std::vector<double> gap, opening, r, d, z, p, q;
+
+    Work(const Lattice& of, EquilibriumOptions with) : lattice(of), options(with), inv_radius(1.0 / of.mean_radius)
+    {
+        for (auto* v : {&r, &d, &z, &p, &q}) v->resize(6 * lattice.r.size());
+    }
+
+    void take_kinds(const std::vector<domain::BondKind>& now);
+    void take_imposed(const Constraints& constraints, State& state);
+    void take_closed_set();
+    void out_of_balance(const State& state);
+    double scale(const State& state) const;
+    std::int64_t conjugate_gradients(double target, std::int64_t most);
+    double exact_step();
+    void hold(std::vector<double>& v) const
+    {
+        for (const std::int64_t dof : imposed) v[static_cast<std::size_t>(dof)] = 0.0;
+    }
+};
+
+void EquilibriumSolver::Work::take_kinds(const std::vector<domain::BondKind>& now)
+{
+    if (stiffness && now == kind) return;
+    kind = now;
+    stiffness.emplace(lattice, kind);
+    contacts = unilateral_contacts(lattice, kind, options.free_contacts);
+    gap.assign(contacts.i.size(), 0.0), opening.assign(contacts.i.size(), 0.0);
+    closed.assign(contacts.i.size(), 0);
+    preconditioner_fits = false;
+}
+
+void EquilibriumSolver::Work::take_imposed(const Constraints& constraints, State& state)
+{
+    if (constraints.dof != imposed) {
+        imposed = constraints.dof;
+        preconditioner_fits = false;
+    }
+    for (std::size_t k = 0; k < imposed.size(); ++k)
+        state.u[static_cast<std::size_t>(imposed[k])] = constraints.value[k];
+}
+
+void EquilibriumSolver::Work::take_closed_set()
+{
+    bool changed = false;
+    for (std::size_t c = 0; c < gap.size(); ++c) {
+        const std::uint8_t now = gap[c] < 0.0;
+        changed |= now != closed[c];
+        closed[c] = now;
+    }
+    if (!changed) return;
+    stiffness->set_springs(closed_springs(contacts, gap));
+    preconditioner_fits = false;
+}
+
+/// r = forces on the elements, zero where imposed; gap of every contact.
+void EquilibriumSolver::Work::out_of_balance(const State& state)
+{
+    stiffness->apply(state.u, r, false);
+    for (double& f : r) f = -f;
+    gaps(contacts, state.u, gap);
+    add_contact_forces(contacts, gap, r);
+    hold(r);
+}
+
+double EquilibriumSolver::Work::scale(const State& state) const
+{
+    double square = beam_force_square(lattice, state);
+    for (std::size_t c = 0; c < gap.size(); ++c) {
+        const double N = unilateral_force(contacts.k[c], gap[c]);
+        square += 2.0 * N * N;
+    }
+    return std::sqrt(square);
+}
+
+/// Solves K d = r until the norm of what is left in r is below target.
+std::int64_t EquilibriumSolver::Work::conjugate_gradients(double target, std::int64_t most)
+{
+    std::fill(d.begin(), d.end(), 0.0);
+    preconditioner.apply(r, z);
+    p = z;
+    double rz = dot(r, z), norm = std::sqrt(weighted_square(r, inv_radius));
+    std::int64_t done = 0;
+    while (norm > target && done < most && rz > 0.0) {
+        check_interrupt();
+        stiffness->apply(p, q);
+        hold(q);
+        const double pq = dot(p, q);
+        if (!(pq > 0.0)) break;  // no stiffness along p: nothing more to gain
+        norm = std::sqrt(step_and_measure(rz / pq, p, q, inv_radius, d, r));
+        ++done;
+        preconditioner.apply(r, z);
+        const double next = dot(r, z);
+        scale_and_add(p, next / rz, z);
+        rz = next;
+    }
+    return done;
+}
+
+/// The s >= 0 that minimises the energy along s d: its slope is monotone and piecewise linear in s.
+double EquilibriumSolver::Work::exact_step()
+{
+    stiffness->apply(d, q, false);
+    openings(contacts, d, opening);
+    const double slope_0 = -dot(r, d), curvature = dot(q, d);
+    const auto slope_at = [&](double s, double& curvature_at) {
+        double slope = slope_0 + s * curvature;
+        curvature_at = curvature;
+        for (std::size_t c = 0; c < gap.size(); ++c) {
+            const double before = std::min(0.0, gap[c]), after = gap[c] + s * opening[c];
+            if (after < 0.0) curvature_at += contacts.k[c] * opening[c] * opening[c];
+            slope += contacts.k[c] * (std::min(0.0, after) - before) * opening[c];
+        }
+        return slope;
+    };
+    double low = 0.0, high = INFINITY, s = 1.0;
+    for (int trial = 0; trial < 100; ++trial) {
+        double bend = 0.0;
+        const double slope = slope_at(s, bend);
+        if (std::abs(slope) <= 1e-10 * std::abs(slope_0)) break;
+        (slope < 0.0 ? low : high) = s;
+        double next = bend > 0.0 ? s - slope / bend : INFINITY;
+        if (!(next > low && next < high)) next = high < INFINITY ? 0.5 * (low + high) : 2.0 * s;
+        s = next;
+    }
+    return s;
+}
+
+EquilibriumSolver::EquilibriumSolver(const Lattice& lattice, EquilibriumOptions options)
+    : work_(std::make_unique<Work>(lattice, options))
+{
+}
+EquilibriumSolver::~EquilibriumSolver() = default;
+EquilibriumSolver::EquilibriumSolver(EquilibriumSolver&&) noexcept = default;
+EquilibriumSolver& EquilibriumSolver::operator=(EquilibriumSolver&&) noexcept = default;
+
+namespace {
+
+void check_shapes(const Lattice& lattice, const Constraints& constraints, const State& state)
+{
+    const auto dofs = 6 * static_cast<std::int64_t>(lattice.elements());
+    if (std::ssize(state.u) != dofs || state.kind.size() != lattice.i.size())
+        throw InvalidInput(
+            fmt::format("equilibrium: the start has {} numbers and {} bonds, the lattice needs {} and {}",
+                        state.u.size(), state.kind.size(), dofs, lattice.i.size()));
+    if (constraints.size() == 0 || constraints.value.size() != constraints.dof.size())
+        throw InvalidInput("equilibrium: nothing is imposed; hold and drive at least one face");
+    for (std::size_t k = 0; k < constraints.dof.size(); ++k) {
+        const auto dof = constraints.dof[k];
+        if (dof < 0 || dof >= dofs || (k > 0 && dof <= constraints.dof[k - 1]) || !std::isfinite(constraints.value[k]))
+            throw InvalidInput(fmt::format(
+                "equilibrium: imposed degree of freedom {} = {:g}: they need to ascend within [0, {}) and to be finite",
+                dof, constraints.value[k], dofs));
+    }
+    for (std::size_t k = 0; k < state.u.size(); ++k)
+        if (!std::isfinite(state.u[k]))
+            throw InvalidInput(
+                fmt::format("equilibrium: number {} of element {} is not finite at the start", k % 6, k / 6));
+}
+
+}  // namespace
+
+Equilibrium EquilibriumSolver::solve(const Constraints& constraints, State start)
+{
+    Work& w = *work_;
+    check_shapes(w.lattice, constraints, start);
+    Equilibrium out{std::move(start), {}, 0.0, 0, 0};
+    w.take_kinds(out.state.kind);
+    w.take_imposed(constraints, out.state);
+
+    double forcing = w.contacts.size() == 0 ? 0.0 : 0.05;
+    for (;; ++out.newton) {
+        w.out_of_balance(out.state);
+        const double norm = std::sqrt(weighted_square(w.r, w.inv_radius)), scale = w.scale(out.state);
+        out.residual = scale > 0.0 ? norm / scale : 0.0;
+        if (out.residual <= w.options.tolerance) break;
+        if (!std::isfinite(out.residual) || out.newton == w.options.newton || out.iterations >= w.options.iterations)
+            throw ComputationFailed(fmt::format(
+                "equilibrium was not reached: the residual is {:.2g} where {:.2g} was asked, after {} "
+                "conjugate-gradient "
+                "iterations and {} changes of the closed contacts. Try smaller load steps, a looser tolerance or more "
+                "iterations; a specimen cut through by cracks may have nothing left to carry the load",
+                out.residual, w.options.tolerance, out.iterations, out.newton));
+        w.take_closed_set();
+        if (!w.preconditioner_fits) w.preconditioner.set_up(*w.stiffness, w.imposed);
+        w.preconditioner_fits = true;
+        const double target = std::max(0.5 * w.options.tolerance * scale, forcing * norm);
+        const std::vector<double> before = w.r;
+        out.iterations += w.conjugate_gradients(target, w.options.iterations - out.iterations);
+        w.r = before;
+        add_scaled(out.state.u, w.contacts.size() == 0 ? 1.0 : w.exact_step(), w.d);
+    }
+    out.forces = forces(w.lattice, out.state, w.options.free_contacts);
+    return out;
+}
+
+Equilibrium equilibrate(const Lattice& lattice, const Constraints& constraints, State start,
+                        const EquilibriumOptions& options)
+{
+    return EquilibriumSolver(lattice, options).solve(constraints, std::move(start));
+}
+
+}  // namespace craze::mechanics

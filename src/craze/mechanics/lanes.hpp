@@ -1,0 +1,85 @@
+// Several bonds at a time: packs of doubles in vector registers, and their way from and to rows of memory.
+
+#pragma once
+
+#include "craze/core/multiversion.hpp"
+
+#include <cmath>
+#include <cstring>
+
+namespace craze::mechanics {
+
+/// Four doubles, computed lane by lane.
+using Lanes = double __attribute__((vector_size(32)));
+using Pair = double __attribute__((vector_size(16)));
+inline constexpr int lanes = 4;
+
+CRAZE_INLINE Lanes load(const double* p)
+{
+    Lanes v;
+    std::memcpy(&v, p, sizeof v);
+    return v;
+}
+CRAZE_INLINE Pair load_pair(const double* p)
+{
+    Pair v;
+    std::memcpy(&v, p, sizeof v);
+    return v;
+}
+CRAZE_INLINE void store(double* p, Lanes v) { std::memcpy(p, &v, sizeof v); }
+CRAZE_INLINE void store(double* p, Pair v) { std::memcpy(p, &v, sizeof v); }
+CRAZE_INLINE Lanes spread(double a) { return Lanes{a, a, a, a}; }
+CRAZE_INLINE Lanes sqrt(Lanes v) { return Lanes{std::sqrt(v[0]), std::sqrt(v[1]), std::sqrt(v[2]), std::sqrt(v[3])}; }
+
+/// Rows become columns.
+CRAZE_INLINE void transpose(Lanes& a, Lanes& b, Lanes& c, Lanes& d)
+{
+    const Lanes ab_0 = __builtin_shufflevector(a, b, 0, 4, 2, 6), ab_1 = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+    const Lanes cd_0 = __builtin_shufflevector(c, d, 0, 4, 2, 6), cd_1 = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    a = __builtin_shufflevector(ab_0, cd_0, 0, 1, 4, 5);
+    b = __builtin_shufflevector(ab_1, cd_1, 0, 1, 4, 5);
+    c = __builtin_shufflevector(ab_0, cd_0, 2, 3, 6, 7);
+    d = __builtin_shufflevector(ab_1, cd_1, 2, 3, 6, 7);
+}
+
+/// Six numbers of four elements, lane by lane.
+struct Six {
+    Lanes a, b, c, d, e, f;
+};
+/// Reads rows of six: p_k points at the row of lane k.
+CRAZE_INLINE Six gather_six(const double* p_0, const double* p_1, const double* p_2, const double* p_3)
+{
+    Six s{load(p_0), load(p_1), load(p_2), load(p_3), {}, {}};
+    transpose(s.a, s.b, s.c, s.d);
+    const Pair r_0 = load_pair(p_0 + 4), r_1 = load_pair(p_1 + 4), r_2 = load_pair(p_2 + 4), r_3 = load_pair(p_3 + 4);
+    const Lanes low = __builtin_shufflevector(r_0, r_2, 0, 1, 2, 3),
+                high = __builtin_shufflevector(r_1, r_3, 0, 1, 2, 3);
+    s.e = __builtin_shufflevector(low, high, 0, 4, 2, 6);
+    s.f = __builtin_shufflevector(low, high, 1, 5, 3, 7);
+    return s;
+}
+
+/// The rows of a Six: four first numbers and two last ones of each lane.
+struct Rows {
+    Lanes head[lanes];
+    Pair tail[lanes];
+};
+CRAZE_INLINE Rows rows_of(Six s)
+{
+    Rows r;
+    const Lanes low = __builtin_shufflevector(s.e, s.f, 0, 4, 2, 6),
+                high = __builtin_shufflevector(s.e, s.f, 1, 5, 3, 7);
+    transpose(s.a, s.b, s.c, s.d);
+    r.head[0] = s.a, r.head[1] = s.b, r.head[2] = s.c, r.head[3] = s.d;
+    r.tail[0] = __builtin_shufflevector(low, low, 0, 1), r.tail[1] = __builtin_shufflevector(high, high, 0, 1);
+    r.tail[2] = __builtin_shufflevector(low, low, 2, 3), r.tail[3] = __builtin_shufflevector(high, high, 2, 3);
+    return r;
+}
+/// p += row k.
+CRAZE_INLINE void add_row(double* p, const Rows& r, int k)
+{
+    store(p, load(p) + r.head[k]);
+    store(p + 4, load_pair(p + 4) + r.tail[k]);
+}
+
+}  // namespace craze::mechanics

@@ -1,0 +1,71 @@
+// The small-displacement stiffness of a lattice with a given set of closed contacts, matrix-free.
+
+#pragma once
+
+#include "craze/mechanics/lattice.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace craze::mechanics {
+
+/// Axial springs, structure of arrays, sorted by (i, j).
+struct Springs {
+    std::vector<std::int32_t> i, j;
+    std::vector<double> tx, ty, tz;  ///< unit vector i -> j
+    std::vector<double> k;           ///< N/m
+
+    std::int32_t size() const { return static_cast<std::int32_t>(i.size()); }
+    void reserve(std::size_t n);
+    void add(std::int32_t from, std::int32_t to, const Vec3& t, double stiffness);
+};
+
+/// Beams only, structure of arrays, sorted by (i, j); padded for the lanes.
+struct Beams {
+    std::vector<std::int32_t> i, j;
+    std::vector<double> tx, ty, tz, inv_length;
+    std::int32_t count = 0;
+};
+
+/// f = K u for the beams of a state and a list of springs.
+///
+/// Each thread owns a range of elements and computes the bonds on its border itself: what an element receives is added
+/// in the order of its bonds, so the bits do not depend on the number of threads.
+class Stiffness {
+public:
+    Stiffness(const Lattice& lattice, std::span<const domain::BondKind> kind);
+    /// Replaces the springs that act beside the beams.
+    void set_springs(Springs springs);
+
+    /// f = K u, of beams and springs or of beams alone; shapes (n, 6).
+    void apply(std::span<const double> u, std::span<double> f, bool with_springs = true) const;
+
+    /// Diagonal 6x6 block of each element, shape (n, 6, 6), added to `blocks`.
+    void diagonal(std::span<double> blocks) const;
+
+    std::int64_t elements() const { return elements_; }
+    const Beams& beams() const { return beams_; }
+    const Springs& springs() const { return springs_; }
+    const BeamSection& section() const { return section_; }
+
+private:
+    /// What one thread adds up: bonds with i in its range, and those that only end there.
+    struct Share {
+        std::int64_t begin = 0, end = 0;            ///< elements
+        std::int64_t beam_begin = 0, beam_end = 0;  ///< own beams
+        std::vector<std::int32_t> border;           ///< beams with i < begin and j in [begin, end)
+        std::int64_t spring_begin = 0, spring_end = 0;
+        std::vector<std::int32_t> spring_border;
+    };
+    void share_out();
+    void apply_share(const Share& share, const double* u, double* f, bool with_springs) const;
+
+    std::int64_t elements_ = 0;
+    BeamSection section_;
+    Beams beams_;
+    Springs springs_;
+    std::vector<Share> shares_;
+};
+
+}  // namespace craze::mechanics
