@@ -1,0 +1,144 @@
+#include "craze/core/errors.hpp"
+#include "craze/synth/synth.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace craze::synth {
+
+namespace {
+
+constexpr Range sizes{1e-9, 1e-3};
+
+void describe_length(Schema& schema, std::string_view key, Length& length, std::string_view meaning)
+{
+    schema.group(key, meaning, [&] {
+        schema.quantity("median", length.median, Dimension::length, sizes, "median");
+        schema.number("spread", length.spread, {0, 3}, "standard deviation of the logarithm");
+        schema.quantity("least", length.least, Dimension::length, {0, 1e-3}, "smaller draws are drawn again");
+        schema.quantity("most", length.most, Dimension::length, sizes, "greater draws are drawn again");
+    });
+}
+
+void check_length(const Length& length, const std::string& where)
+{
+    if (!(length.least <= length.median && length.median <= length.most))
+        throw InvalidInput(fmt::format("synth: {} needs least <= median <= most, got {:g} <= {:g} <= {:g} m", where,
+                                       length.least, length.median, length.most));
+}
+
+}  // namespace
+
+Settings::Settings()
+{
+    PorePopulation globular{.name = "globular pores",
+                            .shape = PoreShape::globular,
+                            .radius = {0.45e-6, 0.25, 0.28e-6, 0.9e-6},
+                            .flatness = 0.75,
+                            .porosity = 0.0253};
+    PorePopulation irregular{.name = "irregular pores",
+                             .shape = PoreShape::irregular,
+                             .radius = {0.55e-6, 0.2, 0.4e-6, 0.9e-6},
+                             .flatness = 0.6,
+                             .porosity = 0.0335};
+    pores = {globular, irregular};
+    CrackPopulation intra{.name = "intra-splat cracks",
+                          .shape = CrackShape::wavy,
+                          .radius = {1.1e-6, 0.35, 0.5e-6, 2.5e-6},
+                          .elongation = 1.3,
+                          .normals = {0.58, 0.42, 0.0},
+                          .aperture = {62e-9, 0.45, 6e-9, 380e-9},
+                          .density = 0.22};
+    CrackPopulation inter{.name = "inter-splat cracks",
+                          .shape = CrackShape::bent,
+                          .radius = {1.3e-6, 0.3, 0.6e-6, 2.5e-6},
+                          .elongation = 1.2,
+                          .bend = 0.3,
+                          .normals = {0.0, 0.0, 1.0},
+                          .scatter = 0.15,
+                          .aperture = {62e-9, 0.45, 6e-9, 380e-9},
+                          .density = 0.08};
+    cracks = {intra, inter};
+}
+
+void describe(Schema& schema, PorePopulation& p)
+{
+    schema.text("name", p.name, "name in tables and messages");
+    schema.option("shape", p.shape, {"globular", "irregular"}, "one ellipsoid, or flattened lobes grown together");
+    describe_length(schema, "radius", p.radius, "radius of the ball of the same volume; of the main lobe if irregular");
+    schema.number("flatness", p.flatness, {0.05, 1}, "shortest over longest semi-axis");
+    schema.integer("lobes", p.lobes, {2, 50}, "lobes of an irregular pore");
+    schema.quantity("porosity", p.porosity, Dimension::fraction, {0, 0.5},
+                    "share of the volume; 0 when count is given");
+    schema.integer("count", p.count, {0, 1e6}, "number of pores; 0 when porosity is given");
+    schema.quantity("gap", p.gap, Dimension::length, {-1e-3, 1e-3},
+                    "least distance to other pores; negative: may overlap");
+    schema.quantity("clustered", p.clustered, Dimension::fraction, {0, 1}, "share placed about an earlier pore");
+    schema.quantity("cluster_radius", p.cluster_radius, Dimension::length, sizes, "spread of a cluster");
+}
+
+void describe(Schema& schema, CrackPopulation& c)
+{
+    schema.text("name", c.name, "name in tables and messages");
+    schema.option("shape", c.shape, {"disc", "elliptic", "wavy", "bent"}, "outline and mid-surface");
+    describe_length(schema, "radius", c.radius, "radius of the disc of the same area");
+    schema.number("elongation", c.elongation, {1, 10}, "longer over shorter axis; not for discs");
+    schema.number("waviness", c.waviness, {0, 0.2}, "wavy: height of the waves over the radius");
+    schema.number("bend", c.bend, {0, 1}, "bent: radius over radius of curvature");
+    schema.quantities("normals", c.normals, Dimension::pure, {0, 1e6}, "shares of cracks with normals about x, y, z");
+    schema.number("scatter", c.scatter, {0, 100}, "spread of the normals about their axis; above 10 nearly isotropic");
+    schema.option("profile", c.profile, {"lens", "flat"}, "opening: falling to 0 at the rim, or equal all over");
+    describe_length(schema, "aperture", c.aperture, "greatest opening of a crack");
+    schema.number("aperture_growth", c.aperture_growth, {0, 3}, "opening grows as (radius / median radius)^this");
+    schema.number("density", c.density, {0, 10}, "sum a^3 / V; 0 when porosity or count is given");
+    schema.quantity("porosity", c.porosity, Dimension::fraction, {0, 0.5},
+                    "share of the volume; 0 when density or count is given");
+    schema.integer("count", c.count, {0, 1e6}, "number of cracks; 0 when density or porosity is given");
+    schema.number("gap", c.gap, {-1, 2}, "least distance of centres over the sum of radii; negative: free");
+    schema.quantity("clustered", c.clustered, Dimension::fraction, {0, 1}, "share placed about an earlier crack");
+    schema.quantity("cluster_radius", c.cluster_radius, Dimension::length, sizes, "spread of a cluster");
+    schema.quantity("at_pores", c.at_pores, Dimension::fraction, {0, 1}, "share that starts at the wall of a pore");
+}
+
+void describe(Schema& schema, Settings& s)
+{
+    schema.integers("shape", s.shape, {8, 20000}, "voxels along x, y, z");
+    schema.quantity("voxel_size", s.voxel_size, Dimension::length, {1e-10, 1e-2}, "edge of a voxel");
+    schema.integer("seed", s.seed, {0, 9e15}, "another seed, another coating of the same statistics");
+    schema.items("pores", s.pores, "populations of pores");
+    schema.items("cracks", s.cracks, "populations of cracks");
+    schema.group("microscope", "faults of the images", [&] { describe(schema, s.microscope); });
+}
+
+void check(const Settings& s)
+{
+    if (s.shape.size() != 3) throw InvalidInput(fmt::format("synth.shape needs three numbers, got {}", s.shape.size()));
+    if (!(s.voxel_size > 0.0)) throw InvalidInput("synth.voxel_size must be above 0");
+    const double voxels =
+        static_cast<double>(s.shape[0]) * static_cast<double>(s.shape[1]) * static_cast<double>(s.shape[2]);
+    if (voxels > 2e10) throw InvalidInput(fmt::format("synth.shape: {:g} voxels are more than 2e10", voxels));
+    for (const auto& p : s.pores) {
+        check_length(p.radius, "radius of " + p.name);
+        if ((p.porosity > 0.0) + (p.count > 0) != 1)
+            throw InvalidInput(fmt::format("synth: {} needs either porosity or count above 0", p.name));
+    }
+    for (const auto& c : s.cracks) {
+        check_length(c.radius, "radius of " + c.name);
+        check_length(c.aperture, "aperture of " + c.name);
+        if ((c.porosity > 0.0) + (c.density > 0.0) + (c.count > 0) != 1)
+            throw InvalidInput(fmt::format("synth: {} needs one of density, porosity and count above 0", c.name));
+        if (c.normals.size() != 3 || !(c.normals[0] + c.normals[1] + c.normals[2] > 0.0))
+            throw InvalidInput(fmt::format("synth: normals of {} need three shares that are not all 0", c.name));
+        if (c.at_pores > 0.0 && s.pores.empty())
+            throw InvalidInput(fmt::format("synth: {} has at_pores above 0, but there are no pores", c.name));
+    }
+}
+
+Vec3 box_of(const Settings& s)
+{
+    return {static_cast<double>(s.shape[0]) * s.voxel_size, static_cast<double>(s.shape[1]) * s.voxel_size,
+            static_cast<double>(s.shape[2]) * s.voxel_size};
+}
+
+}  // namespace craze::synth
