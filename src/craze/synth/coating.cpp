@@ -24,9 +24,13 @@ Facing facing(const Ellipsoid& body, const Vec3& point)
                  dot(rel, body.frame.n) / body.semi.z};
     const Vec3 slope{q.x / body.semi.x, q.y / body.semi.y, q.z / body.semi.z};
     const double level = norm(q), steepness = norm(slope);
-    if (!(steepness > 0.0)) return {-std::min({body.semi.x, body.semi.y, body.semi.z}), body.frame.n};
+    if (!(steepness > 0.0)) return {-std::min({body.semi.x, body.semi.y, body.semi.z}), body.frame.n, 0.0};
     const Vec3 s = slope / steepness;
-    return {level * (level - 1.0) / steepness, s.x * body.frame.u + s.y * body.frame.v + s.z * body.frame.n};
+    const Vec3 inverse2{1.0 / (body.semi.x * body.semi.x), 1.0 / (body.semi.y * body.semi.y),
+                        1.0 / (body.semi.z * body.semi.z)};
+    const double along = s.x * s.x * inverse2.x + s.y * s.y * inverse2.y + s.z * s.z * inverse2.z;
+    return {level * (level - 1.0) / steepness, s.x * body.frame.u + s.y * body.frame.v + s.z * body.frame.n,
+            0.5 * (inverse2.x + inverse2.y + inverse2.z - along) / steepness};
 }
 
 Facing facing(const Pore& pore, const Vec3& point)

@@ -26,11 +26,11 @@ struct Ellipsoid {
     Vec3 semi;  ///< semi-axes along u, v, n, m, > 0
 };
 
-/// Signed distance of a point from the surface (m, negative inside) and the outward unit normal there. First order
-/// in the distance: exact on the surface and everywhere for a sphere.
+/// The surface as seen from a point near it: exact on the surface, first order in the distance elsewhere.
 struct Facing {
-    double distance;
-    Vec3 normal;
+    double distance;   ///< signed, m, negative inside
+    Vec3 normal;       ///< outward
+    double curvature;  ///< mean of the two principal curvatures, 1/m, positive for a ball
 };
 Facing facing(const Ellipsoid& body, const Vec3& point);
 

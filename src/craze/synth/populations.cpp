@@ -98,11 +98,11 @@ void grow(Pore& pore, double factor)
     }
 }
 
-/// Share of the box's volume that the pore takes, by 20^3 points of its own box.
+/// Volume of the pore inside the box, by 24^3 points of its own box.
 double volume_in(const Pore& pore, const Vec3& size)
 {
     const auto ball = bounding_ball(pore);
-    constexpr int n = 20;
+    constexpr int n = 24;
     const double edge = 2.0 * ball[3] / n;
     std::int64_t hits = 0;
     for (int i = 0; i < n; ++i)

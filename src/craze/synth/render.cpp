@@ -48,7 +48,8 @@ void render_pore(const Pore& pore, const SliceGrid& grid, std::span<float> share
         for (std::int64_t x = columns.begin; x < columns.end; ++x) {
             const Facing seen = facing(pore, {grid.origin.x + static_cast<double>(x) * grid.h,
                                               grid.origin.y + static_cast<double>(y) * grid.h, grid.origin.z});
-            const double distance = seen.distance / grid.h;
+            // A curved face lies behind its tangent plane by curvature h / 12 on average over a voxel's section.
+            const double distance = seen.distance / grid.h + std::min(0.1, seen.curvature * grid.h / 12.0);
             if (distance >= half_diagonal) continue;
             float& here = share[static_cast<std::size_t>(x + grid.nx * y)];
             // The void lies where normal . x < -distance from the voxel's centre.

@@ -22,7 +22,7 @@ TEST(Coating, MeetsTheRecipesPorosityAndDensity)
 {
     const Settings s = small();
     const Coating coating = make_coating(s);
-    EXPECT_NEAR(porosity(coating, s.voxel_size).pores, s.pores[0].porosity + s.pores[1].porosity, 0.0012);
+    EXPECT_NEAR(porosity(coating, s.voxel_size).pores, s.pores[0].porosity + s.pores[1].porosity, 0.0006);
     for (std::size_t p = 0; p < s.cracks.size(); ++p) {
         double cubes = 0.0;
         for (const auto& crack : coating.cracks) {
