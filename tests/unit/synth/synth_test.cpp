@@ -3,8 +3,13 @@
 #include "craze/core/errors.hpp"
 #include "craze/core/parallel.hpp"
 
+#include "craze/core/json.hpp"
+#include "craze/io/atomic_file.hpp"
+#include "craze/io/volume_file.hpp"
+
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace craze::synth {
@@ -168,6 +173,28 @@ TEST(Microscope, DriftsAndErrsInDepthAsSetAndComesBack)
     }
     EXPECT_NEAR(std::sqrt(step2 / 1999), 0.5, 0.03);
     EXPECT_NEAR(std::sqrt(thickness2 / 1999), 0.1, 0.006);
+}
+
+TEST(Saved, CoatingIsReadBackWithItsTruthBeside)
+{
+    const Settings s = small();
+    const Coating coating = make_coating(s);
+    const Observation seen = observe(coating, s);
+    const auto folder = std::filesystem::path(testing::TempDir()) / "craze_synth_saved";
+    std::filesystem::remove_all(folder);
+    save(coating, seen, s, folder);
+    const auto stack = io::read_volume<std::uint8_t>(folder / "stack.tif");
+    EXPECT_TRUE(std::ranges::equal(stack.values(), seen.stack.level.values()));
+    const auto label = io::read_volume<std::uint8_t>(folder / "truth.mhd");
+    EXPECT_TRUE(std::ranges::equal(label.values(), seen.label.values()));
+    const Json truth = Json::parse(io::read_text(folder / "truth.json"));
+    EXPECT_EQ(truth["true_porosity"]["total"], seen.fraction.total);
+    EXPECT_EQ(truth["cracks"], coating.cracks.size());
+    const std::string table = io::read_text(folder / "defects.csv");
+    EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(table, '\n')),
+              1 + coating.cracks.size() + coating.pores.size());
+    EXPECT_EQ(io::read_text(folder / "cracks.ply").substr(0, 4), "ply\n");
+    std::filesystem::remove_all(folder);
 }
 
 }  // namespace
