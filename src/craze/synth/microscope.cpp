@@ -67,6 +67,35 @@ void blur(std::span<const float> from, std::span<float> to, std::int64_t nx, std
     }
 }
 
+/// Noise by table: the middles of 2^14 equally likely slices of the normal distribution, scaled to unit variance. Four
+/// draws from one 64-bit number, twenty times faster than logarithms and cosines; gray levels are rounded anyway.
+class NoiseTable {
+public:
+    NoiseTable() : value_(size)
+    {
+        double sum2 = 0.0, z = -4.5;
+        for (std::size_t i = 0; i < size; ++i) {
+            const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(size);
+            for (int newton = 0; newton < 30; ++newton) {
+                const double excess = 0.5 * std::erfc(-z / std::numbers::sqrt2) - share;
+                const double slope = std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi);
+                const double step = std::clamp(excess / slope, -0.5, 0.5);
+                z -= step;
+                if (std::abs(step) < 1e-12) break;
+            }
+            value_[i] = static_cast<float>(z);
+            sum2 += z * z;
+        }
+        const auto scale = static_cast<float>(1.0 / std::sqrt(sum2 / static_cast<double>(size)));
+        for (auto& v : value_) v *= scale;
+    }
+    float operator()(std::uint64_t bits) const { return value_[bits & (size - 1)]; }
+
+private:
+    static constexpr std::size_t size = 1U << 14U;
+    std::vector<float> value_;
+};
+
 /// Curtains of one slice: one value for each row, of unit variance, correlated over `width` rows.
 std::vector<double> curtains(Random& random, std::int64_t ny, double width)
 {
@@ -122,17 +151,25 @@ void record_slice(const Microscope& m, std::span<const float> share, std::int64_
     const auto centred = [](std::int64_t i, std::int64_t n) {
         return n > 1 ? static_cast<double>(i) / static_cast<double>(n - 1) - 0.5 : 0.0;
     };
+    // Curtains fade in and out along the beam by a fifth, as they do below a step of the surface.
+    std::vector<float> fade(static_cast<std::size_t>(nx)), slope(fade.size());
+    for (std::int64_t x = 0; x < nx; ++x) {
+        fade[static_cast<std::size_t>(x)] =
+            static_cast<float>(1.0 + 0.2 * std::sin(2.0 * std::numbers::pi * centred(x, nx) + phase));
+        slope[static_cast<std::size_t>(x)] = static_cast<float>(m.shading_x * centred(x, nx));
+    }
+    static const NoiseTable noise;
+    const auto contrast = static_cast<float>(m.matter - m.void_level), sigma = static_cast<float>(m.noise);
     for (std::int64_t y = 0; y < ny; ++y) {
-        const double row = m.matter + m.shading_y * centred(y, ny) + m.shading_z * centred(z, nz);
+        const auto row = static_cast<float>(m.matter + m.shading_y * centred(y, ny) + m.shading_z * centred(z, nz));
+        const auto curtain_here = static_cast<float>(m.stripes * stripe[static_cast<std::size_t>(y)]);
         Random random(seed, stream(Purpose::noise, z, y));
+        std::uint64_t bits = 0;
         for (std::int64_t x = 0; x < nx; ++x) {
-            const auto i = static_cast<std::size_t>(x + nx * y);
-            // Curtains fade in and out along the beam by a fifth, as they do below a step of the surface.
-            const double fade = 1.0 + 0.2 * std::sin(2.0 * std::numbers::pi * centred(x, nx) + phase);
-            double level = row + m.shading_x * centred(x, nx) - (m.matter - m.void_level) * work[i] +
-                           m.stripes * stripe[static_cast<std::size_t>(y)] * fade;
-            if (m.noise > 0.0) level += m.noise * random.normal();
-            gray[i] = static_cast<std::uint8_t>(std::clamp(std::lround(level), 0L, 255L));
+            const auto i = static_cast<std::size_t>(x + nx * y), c = static_cast<std::size_t>(x);
+            bits = x % 4 == 0 ? random.bits() : bits >> 16U;
+            const float level = row + slope[c] - contrast * work[i] + curtain_here * fade[c] + sigma * noise(bits);
+            gray[i] = static_cast<std::uint8_t>(std::clamp(level + 0.5F, 0.0F, 255.0F));
         }
     }
 }

@@ -66,9 +66,13 @@ void write_ply(const std::filesystem::path& file, const mesh::CrackSurface& shee
 
 Json summary(const Coating& coating, const Observation& observation, const Settings& settings)
 {
-    double cubes = 0.0;
-    for (const auto& crack : coating.cracks) cubes += std::pow(crack.a * crack.b, 1.5);
     const Vec3& size = coating.size;
+    double cubes = 0.0;
+    for (const auto& crack : coating.cracks) {
+        const Vec3& c = crack.centre;
+        const bool in = c.x >= 0 && c.x <= size.x && c.y >= 0 && c.y <= size.y && c.z >= 0 && c.z <= size.z;
+        if (in) cubes += std::pow(crack.a * crack.b, 1.5);
+    }
     Json populations = Json::array();
     for (std::size_t p = 0; p < settings.pores.size(); ++p)
         populations.push_back(
