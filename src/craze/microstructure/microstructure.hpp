@@ -46,6 +46,8 @@ Microstructure classify(images::Gray gray, const Settings& settings);
 
 /// `phase.mhd` (255 matter, 0 pore, 128 crack) and `threshold.json` in `folder`. The gray levels stay with `images`.
 void save(const Microstructure& micro, const std::filesystem::path& folder);
+/// One mask as `file` (.mhd): 255 in the set, 0 out of it.
+void save(const Mask& mask, double voxel_size, const std::filesystem::path& file);
 /// @throws InvalidInput  when a file is missing, or the phases and the gray levels differ in shape
 Microstructure load_microstructure(const std::filesystem::path& folder, const std::filesystem::path& images_folder);
 
