@@ -14,6 +14,9 @@ namespace craze::mesh {
 struct CrackSurface {
     std::vector<Vec3> vertices;                          ///< m, shape (n,)
     std::vector<std::array<std::int32_t, 3>> triangles;  ///< indices into vertices, shape (m,), no duplicates
+    /// Faces of the crack that a triangle stands for, shape (m,): 2 where it is the sheet itself, 1 where the sheet is
+    /// a flat shell of two skins around tetrahedra of the alpha shape. The crack's area is the sum of sides / 2 x area.
+    std::vector<std::uint8_t> sides;
 };
 
 }  // namespace craze::mesh
