@@ -46,8 +46,8 @@ std::size_t bytes_of(Kind kind)
 
 std::optional<Kind> kind_named(const std::string& name)
 {
-    constexpr const char* names[][2] = {{"char", "int8"}, {"uchar", "uint8"},   {"short", "int16"},
-                                        {"ushort", "uint16"}, {"int", "int32"}, {"uint", "uint32"},
+    constexpr const char* names[][2] = {{"char", "int8"},     {"uchar", "uint8"},   {"short", "int16"},
+                                        {"ushort", "uint16"}, {"int", "int32"},     {"uint", "uint32"},
                                         {"float", "float32"}, {"double", "float64"}};
     for (int k = 0; k < 8; ++k)
         if (name == names[k][0] || name == names[k][1]) return static_cast<Kind>(k);
@@ -83,8 +83,10 @@ public:
             if (element.count * std::max<std::size_t>(element.properties.size(), 1) > size_)
                 fail(fmt::format("says it has {} of element {}, more than the file can hold", element.count,
                                  element.name));
-            if (element.name == "vertex") vertices(element, mesh);
-            else if (element.name == "face") faces(element, mesh);
+            if (element.name == "vertex")
+                vertices(element, mesh);
+            else if (element.name == "face")
+                faces(element, mesh);
             else
                 for (std::uint64_t i = 0; i < element.count; ++i)
                     for (const Property& p : element.properties) skip(p);
@@ -188,10 +190,14 @@ private:
         mesh.vertices.resize(element.count);
         for (Vec3& v : mesh.vertices)
             for (const Property& p : element.properties) {
-                if (!p.count && p.name == "x") v.x = number(p.kind);
-                else if (!p.count && p.name == "y") v.y = number(p.kind);
-                else if (!p.count && p.name == "z") v.z = number(p.kind);
-                else skip(p);
+                if (!p.count && p.name == "x")
+                    v.x = number(p.kind);
+                else if (!p.count && p.name == "y")
+                    v.y = number(p.kind);
+                else if (!p.count && p.name == "z")
+                    v.z = number(p.kind);
+                else
+                    skip(p);
             }
     }
 
@@ -219,7 +225,7 @@ private:
     static std::int32_t index(double value)
     {
         return value >= 0.0 && value <= std::numeric_limits<std::int32_t>::max() ? static_cast<std::int32_t>(value)
-                                                                                : -1;
+                                                                                 : -1;
     }
 
     std::string file_, tag_;

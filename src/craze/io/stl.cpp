@@ -27,7 +27,9 @@ void write_stl(const std::filesystem::path& file, const TriangleView& mesh)
         out.text(title);
         out.put(static_cast<std::uint32_t>(mesh.triangles.size()));
         for (const Corners& t : mesh.triangles) {
-            const auto corner = [&](int k) { return mesh.vertices[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])]; };
+            const auto corner = [&](int k) {
+                return mesh.vertices[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])];
+            };
             const Vec3 a = corner(0), b = corner(1), c = corner(2);
             const Vec3 n = cross(b - a, c - a);
             const double size = norm(n);

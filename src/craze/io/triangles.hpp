@@ -25,7 +25,7 @@ struct TriangleField {
 /// A view of a mesh.
 struct TriangleView {
     std::span<const Vec3> vertices;
-    std::span<const Corners> triangles;    ///< indices into vertices
+    std::span<const Corners> triangles;   ///< indices into vertices
     std::vector<TriangleField> fields{};  ///< shape (triangles,) each; STL leaves them out
 };
 

@@ -14,7 +14,8 @@ struct Appended {
     void array(const char* type, const std::string& name, int components, std::uint64_t bytes)
     {
         xml += fmt::format(
-            "        <DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" offset=\"{}\"/>\n",
+            "        <DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" "
+            "offset=\"{}\"/>\n",
             type, name, components, offset);
         offset += sizeof(std::uint64_t) + bytes;
     }

@@ -20,8 +20,7 @@ constexpr double smallest_alpha = 0.87;  // sqrt(3) / 2: voxels that share a cor
 
 void describe(Schema& schema, Settings& settings)
 {
-    schema.option("skeleton", settings.skeleton, {"per_slice"},
-                  "per_slice thins each slice as the paper does");
+    schema.option("skeleton", settings.skeleton, {"per_slice"}, "per_slice thins each slice as the paper does");
     schema.choice("slice_axis", settings.slice_axis, {"x", "y", "z"},
                   "per_slice: the slices are perpendicular to this axis");
     schema.quantity("alpha", settings.alpha, Dimension::pixel, {smallest_alpha, largest_alpha},
@@ -31,8 +30,8 @@ void describe(Schema& schema, Settings& settings)
 void check(const Settings& settings)
 {
     if (!(settings.alpha >= smallest_alpha && settings.alpha <= largest_alpha))
-        throw InvalidInput(fmt::format("mesh.alpha: needs {} px to {} px, got {} px", smallest_alpha, largest_alpha,
-                                       settings.alpha));
+        throw InvalidInput(
+            fmt::format("mesh.alpha: needs {} px to {} px, got {} px", smallest_alpha, largest_alpha, settings.alpha));
     if (!(settings.slice_axis >= 0 && settings.slice_axis <= 2))
         throw InvalidInput(fmt::format("mesh.slice_axis: needs x, y or z, got axis {}", settings.slice_axis));
 }

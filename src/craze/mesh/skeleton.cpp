@@ -75,16 +75,45 @@ CRAZE_INLINE Word deletable(const Ring& r, bool second)
     return starts.one & ~starts.two & neighbours.two & gaps.two & ~kept;
 }
 
-// Marks in `out` the deletable pixels of one row; true if there are any.
-CRAZE_MULTIVERSION bool mark_row(const Word* north, const Word* here, const Word* south, Word* out, std::int64_t words,
-                                 bool second)
+// Corner pixels of staircases, whose two neighbours touch without them; `turn` is where the corner points: 0 NE, 1 SE,
+// 2 SW, 3 NW. Two of them are never 4-neighbours, so all of one turn may go at once.
+CRAZE_INLINE Word corner(const Ring& r, int turn)
+{
+    const auto p = [&](int k) { return r.p[(2 * turn + k) % 8]; };
+    return p(0) & ~p(1) & p(2) & ~p(4) & ~p(5) & ~p(6);
+}
+
+// One iteration: staircases are trimmed first, for Zhang and Suen's rule eats bands two pixels wide from their ends
+// when they run diagonally; then the two halves of their rule.
+constexpr int phases = 6;
+
+template <int Phase>
+CRAZE_INLINE bool mark_row_in(const Word* north, const Word* here, const Word* south, Word* out, std::int64_t words)
 {
     Word any = 0;
     for (std::int64_t w = 0; w < words; ++w) {
-        out[w] = here[w] & deletable(ring_of(north, here, south, w), second);
+        const Ring ring = ring_of(north, here, south, w);
+        if constexpr (Phase < 4)
+            out[w] = here[w] & corner(ring, Phase);
+        else
+            out[w] = here[w] & deletable(ring, Phase == 5);
         any |= out[w];
     }
     return any != 0;
+}
+
+// Marks in `out` what may go from one row; true if there is any.
+CRAZE_MULTIVERSION bool mark_row(const Word* north, const Word* here, const Word* south, Word* out, std::int64_t words,
+                                 std::int64_t phase)
+{
+    switch (phase) {
+        case 0: return mark_row_in<0>(north, here, south, out, words);
+        case 1: return mark_row_in<1>(north, here, south, out, words);
+        case 2: return mark_row_in<2>(north, here, south, out, words);
+        case 3: return mark_row_in<3>(north, here, south, out, words);
+        case 4: return mark_row_in<4>(north, here, south, out, words);
+        default: return mark_row_in<5>(north, here, south, out, words);
+    }
 }
 
 // Deleting at once two neighbours that are each simple can still cut, and four can take a whole square. Such marks
@@ -113,43 +142,23 @@ void lift_unsafe_marks(const Word* north, const Word* here, const Word* south, c
     }
 }
 
-// Corner pixels of staircases whose neighbours touch without them; `turn` is where the corner points: 0 NE ... 3 NW.
-// Two of them are never 4-neighbours, so a whole pass is safe.
-void trim_corners(Slice& slice, Slice& marks, int turn)
-{
-    const auto a = static_cast<std::size_t>(2 * turn);
-    for (std::int64_t y = 0; y < slice.rows; ++y) {
-        const Word *north = slice.row(y - 1), *here = slice.row(y), *south = slice.row(y + 1);
-        for (std::int64_t w = 0; w < slice.words; ++w) {
-            if (here[w] == 0) continue;
-            const Ring r = ring_of(north, here, south, w);
-            const auto p = [&](std::size_t k) { return r.p[(a + k) % 8]; };
-            marks.row(y)[w] = here[w] & p(0) & p(2) & ~p(4) & ~p(5) & ~p(6) & ~(p(3) & p(7));
-        }
-    }
-    for (std::size_t i = 0; i < slice.bits.size(); ++i) {
-        slice.bits[i] &= ~marks.bits[i];
-        marks.bits[i] = 0;
-    }
-}
-
 void thin(Slice& slice)
 {
     Slice marks(slice.rows, slice.words), safe(slice.rows, slice.words);
     constexpr std::int64_t never = std::numeric_limits<std::int64_t>::min() / 2;
-    // When each row last changed, counted in half iterations; two more entries for the empty rows outside.
+    // When each row last changed, counted in phases; two more entries for the empty rows outside.
     std::vector<std::int64_t> changed(static_cast<std::size_t>(slice.rows + 2), never);
     std::vector<std::int64_t> marked;
     for (std::int64_t y = 0; y < slice.rows; ++y)
         if (std::any_of(slice.row(y), slice.row(y) + slice.words, [](Word w) { return w != 0; }))
             changed[static_cast<std::size_t>(y + 1)] = -1;
-    for (std::int64_t half = 0, last = 0; half <= last + 2; ++half) {
-        // A row whose surroundings are what they were when this half was last tried has nothing to give.
+    for (std::int64_t step = 0, last = 0; step <= last + phases; ++step) {
+        // A row whose surroundings are what they were when this phase was last tried has nothing to give.
         marked.clear();
         for (std::int64_t y = 0; y < slice.rows; ++y) {
             const auto c = changed.begin() + y;
-            if (*std::max_element(c, c + 3) < half - 2) continue;
-            if (mark_row(slice.row(y - 1), slice.row(y), slice.row(y + 1), marks.row(y), slice.words, half % 2 == 1))
+            if (std::max({c[0], c[1], c[2]}) < step - phases) continue;
+            if (mark_row(slice.row(y - 1), slice.row(y), slice.row(y + 1), marks.row(y), slice.words, step % phases))
                 marked.push_back(y);
         }
         for (const std::int64_t y : marked)
@@ -162,10 +171,9 @@ void thin(Slice& slice)
                 any |= safe.row(y)[w];
                 marks.row(y)[w] = 0;
             }
-            if (any != 0) changed[static_cast<std::size_t>(y + 1)] = last = half;
+            if (any != 0) changed[static_cast<std::size_t>(y + 1)] = last = step;
         }
     }
-    for (int turn = 0; turn < 4; ++turn) trim_corners(slice, marks, turn);
 }
 
 // The mask with x and y exchanged.
