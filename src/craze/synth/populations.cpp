@@ -213,6 +213,21 @@ Vec3 wall_point(const Pore& pore, Random& random)
     return p;
 }
 
+/// Scales the openings of the cracks from `first` on so that they take `share` of the box outside pores.
+void open_to(double share, std::size_t first, Coating& coating)
+{
+    Coating alone{coating.size,
+                  coating.pores,
+                  {coating.cracks.begin() + static_cast<std::ptrdiff_t>(first), coating.cracks.end()}};
+    const double grid = std::cbrt(coating.size.x * coating.size.y * coating.size.z) / 128.0;
+    for (int round = 0; round < 2; ++round) {
+        const double found = porosity(alone, grid).cracks;
+        if (!(found > 0.0)) return;
+        for (auto& crack : alone.cracks) crack.aperture *= share / found;
+    }
+    std::copy(alone.cracks.begin(), alone.cracks.end(), coating.cracks.begin() + static_cast<std::ptrdiff_t>(first));
+}
+
 void place_cracks(const CrackPopulation& c, std::int32_t number, const Settings& settings, Coating& coating)
 {
     const Vec3& size = coating.size;
@@ -264,14 +279,14 @@ void place_cracks(const CrackPopulation& c, std::int32_t number, const Settings&
         }
         coating.cracks.push_back(crack);
     }
-    const double lengths = c.density > 0.0 ? std::cbrt(c.density * box / cubes) : 1.0;
-    const double openings = c.porosity > 0.0 ? c.porosity * box / filled : 1.0;
-    for (std::size_t i = first; i < coating.cracks.size(); ++i) {
-        Crack& crack = coating.cracks[i];
-        crack.a *= lengths;
-        crack.b *= lengths;
-        crack.aperture *= openings;
+    if (c.density > 0.0) {
+        const double factor = std::cbrt(c.density * box / cubes);
+        for (std::size_t i = first; i < coating.cracks.size(); ++i) {
+            coating.cracks[i].a *= factor;
+            coating.cracks[i].b *= factor;
+        }
     }
+    if (c.porosity > 0.0) open_to(c.porosity, first, coating);
 }
 
 }  // namespace

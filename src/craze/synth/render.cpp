@@ -64,6 +64,7 @@ void render_crack(const Crack& crack, const SliceGrid& grid, std::span<float> sh
     // Slopes are below about 1, so the part of a voxel's diagonal across the plane covers the opening across the sheet.
     const double thick = relief(crack) + crack.aperture + 2.0 * margin;
     const double ball = std::sqrt(radius * radius + thick * thick);
+    const double inverse_a2 = 1.0 / (crack.a * crack.a), inverse_b2 = 1.0 / (crack.b * crack.b);
     const double dz = grid.origin.z - crack.centre.z;
     if (std::abs(dz) > ball) return;
     const double in_slice = std::sqrt(ball * ball - dz * dz);
@@ -81,7 +82,12 @@ void render_crack(const Crack& crack, const SliceGrid& grid, std::span<float> sh
             continue;
         }
         const Run columns = run_of(crack.centre.x + least, crack.centre.x + most, grid.origin.x, grid.h, grid.nx);
+        const double u_row = dy * crack.frame.u.y + dz * crack.frame.u.z,
+                     v_row = dy * crack.frame.v.y + dz * crack.frame.v.z;
         for (std::int64_t x = columns.begin; x < columns.end; ++x) {
+            const double dx = grid.origin.x + static_cast<double>(x) * grid.h - crack.centre.x;
+            const double u = dx * crack.frame.u.x + u_row, v = dx * crack.frame.v.x + v_row;
+            if (u * u * inverse_a2 + v * v * inverse_b2 >= 1.0) continue;
             const CrackView seen =
                 view(crack, {grid.origin.x + static_cast<double>(x) * grid.h, crack.centre.y + dy, grid.origin.z});
             const double opening = 0.5 * seen.opening / grid.h, distance = seen.distance / grid.h;

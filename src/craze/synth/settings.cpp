@@ -36,12 +36,12 @@ Settings::Settings()
                             .shape = PoreShape::globular,
                             .radius = {0.45e-6, 0.25, 0.28e-6, 0.9e-6},
                             .flatness = 0.75,
-                            .porosity = 0.0253};
+                            .porosity = 0.0248};
     PorePopulation irregular{.name = "irregular pores",
                              .shape = PoreShape::irregular,
                              .radius = {0.55e-6, 0.2, 0.4e-6, 0.9e-6},
                              .flatness = 0.6,
-                             .porosity = 0.0335};
+                             .porosity = 0.0330};
     pores = {globular, irregular};
     CrackPopulation intra{.name = "intra-splat cracks",
                           .shape = CrackShape::wavy,
@@ -49,7 +49,8 @@ Settings::Settings()
                           .elongation = 1.3,
                           .normals = {0.58, 0.42, 0.0},
                           .aperture = {62e-9, 0.45, 6e-9, 380e-9},
-                          .density = 0.22};
+                          .density = 0.22,
+                          .porosity = 0.0212};
     CrackPopulation inter{.name = "inter-splat cracks",
                           .shape = CrackShape::bent,
                           .radius = {1.3e-6, 0.3, 0.6e-6, 2.5e-6},
@@ -58,7 +59,8 @@ Settings::Settings()
                           .normals = {0.0, 0.0, 1.0},
                           .scatter = 0.15,
                           .aperture = {62e-9, 0.45, 6e-9, 380e-9},
-                          .density = 0.08};
+                          .density = 0.08,
+                          .porosity = 0.0083};
     cracks = {intra, inter};
 }
 
@@ -91,10 +93,10 @@ void describe(Schema& schema, CrackPopulation& c)
     schema.option("profile", c.profile, {"lens", "flat"}, "opening: falling to 0 at the rim, or equal all over");
     describe_length(schema, "aperture", c.aperture, "greatest opening of a crack");
     schema.number("aperture_growth", c.aperture_growth, {0, 3}, "opening grows as (radius / median radius)^this");
-    schema.number("density", c.density, {0, 10}, "sum a^3 / V; 0 when porosity or count is given");
+    schema.number("density", c.density, {0, 10}, "sum a^3 / V, met by scaling sizes; 0: number by count or porosity");
     schema.quantity("porosity", c.porosity, Dimension::fraction, {0, 0.5},
-                    "share of the volume; 0 when density or count is given");
-    schema.integer("count", c.count, {0, 1e6}, "number of cracks; 0 when density or porosity is given");
+                    "share of the volume, met by scaling openings; 0: openings as drawn");
+    schema.integer("count", c.count, {0, 1e6}, "number of cracks centred in the box; 0: by density or porosity");
     schema.number("gap", c.gap, {-1, 2}, "least distance of centres over the sum of radii; negative: free");
     schema.quantity("clustered", c.clustered, Dimension::fraction, {0, 1}, "share placed about an earlier crack");
     schema.quantity("cluster_radius", c.cluster_radius, Dimension::length, sizes, "spread of a cluster");
@@ -126,8 +128,9 @@ void check(const Settings& s)
     for (const auto& c : s.cracks) {
         check_length(c.radius, "radius of " + c.name);
         check_length(c.aperture, "aperture of " + c.name);
-        if ((c.porosity > 0.0) + (c.density > 0.0) + (c.count > 0) != 1)
-            throw InvalidInput(fmt::format("synth: {} needs one of density, porosity and count above 0", c.name));
+        if ((c.density > 0.0) + (c.count > 0) != 1 && !(c.porosity > 0.0 && c.density == 0.0 && c.count == 0))
+            throw InvalidInput(fmt::format(
+                "synth: {} needs density or count or porosity above 0, and not density with count", c.name));
         if (c.normals.size() != 3 || !(c.normals[0] + c.normals[1] + c.normals[2] > 0.0))
             throw InvalidInput(fmt::format("synth: normals of {} need three shares that are not all 0", c.name));
         if (c.at_pores > 0.0 && s.pores.empty())

@@ -45,7 +45,7 @@ struct PorePopulation {
 
 enum class CrackShape { disc, elliptic, wavy, bent };
 
-/// Cracks alike. How many: one of density, porosity and count is above zero.
+/// Cracks alike. How many: by density or by count, or, where both are 0, until porosity is reached.
 struct CrackPopulation {
     std::string name = "cracks";
     CrackShape shape = CrackShape::disc;
@@ -58,13 +58,13 @@ struct CrackPopulation {
     ApertureProfile profile = ApertureProfile::lens;
     Length aperture{45e-9, 0.6, 2e-9, 380e-9};  ///< greatest opening
     double aperture_growth = 0.0;               ///< opening grows as (radius / median radius)^this
-    double density = 0.0;                       ///< sum a^3 / V of cracks centred in the box; sizes scaled to meet it
-    double porosity = 0.0;                      ///< instead: volume of the cracks over that of the box; openings scaled
-    std::int64_t count = 0;                     ///< instead: number centred in the box
-    double gap = -1.0;                          ///< least distance of centres over the sum of radii; negative = free
-    double clustered = 0.0;                     ///< share placed about an earlier crack of the population
-    double cluster_radius = 2e-6;               ///< m
-    double at_pores = 0.0;                      ///< share that starts at the wall of a pore
+    double density = 0.0;    ///< sum a^3 / V of the cracks centred in the box; sizes are scaled to meet it exactly
+    double porosity = 0.0;   ///< share of the box outside pores; openings are scaled to meet it; 0: as drawn
+    std::int64_t count = 0;  ///< number centred in the box
+    double gap = -1.0;       ///< least distance of centres over the sum of radii; negative = free
+    double clustered = 0.0;  ///< share placed about an earlier crack of the population
+    double cluster_radius = 2e-6;  ///< m
+    double at_pores = 0.0;         ///< share that starts at the wall of a pore
 };
 
 struct Settings {

@@ -27,6 +27,7 @@ TEST(Coating, MeetsTheRecipesPorosityAndDensity)
 {
     const Settings s = small();
     const Coating coating = make_coating(s);
+    EXPECT_NEAR(porosity(coating, s.voxel_size).cracks, s.cracks[0].porosity + s.cracks[1].porosity, 0.0006);
     EXPECT_NEAR(porosity(coating, s.voxel_size).pores, s.pores[0].porosity + s.pores[1].porosity, 0.0006);
     for (std::size_t p = 0; p < s.cracks.size(); ++p) {
         double cubes = 0.0;
@@ -86,7 +87,8 @@ TEST(CoatingSettings, ThatContradictThemselvesAreRefused)
     refused([](Settings& s) { s.voxel_size = std::nan(""); });
     refused([](Settings& s) { s.pores[0].count = 3; });
     refused([](Settings& s) { s.pores[0].porosity = 0; });
-    refused([](Settings& s) { s.cracks[0].porosity = 0.1; });
+    refused([](Settings& s) { s.cracks[0].count = 5; });
+    refused([](Settings& s) { s.cracks[0].density = s.cracks[0].porosity = 0; });
     refused([](Settings& s) { s.cracks[0].normals = {0, 0, 0}; });
     refused([](Settings& s) { s.cracks[0].radius.least = 1; });
     refused([](Settings& s) { s.pores.clear(), s.cracks[0].at_pores = 0.5; });
