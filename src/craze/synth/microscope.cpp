@@ -29,22 +29,10 @@ std::vector<double> bridge(Random& random, std::int64_t n, double step)
     return walk;
 }
 
-std::vector<float> gaussian(double sigma)
-{
-    const auto reach = static_cast<std::int64_t>(std::ceil(3.5 * sigma));
-    std::vector<float> weight(static_cast<std::size_t>(2 * reach + 1));
-    double sum = 0.0;
-    for (std::int64_t i = -reach; i <= reach; ++i) sum += std::exp(-0.5 * static_cast<double>(i * i) / (sigma * sigma));
-    for (std::int64_t i = -reach; i <= reach; ++i)
-        weight[static_cast<std::size_t>(i + reach)] =
-            static_cast<float>(std::exp(-0.5 * static_cast<double>(i * i) / (sigma * sigma)) / sum);
-    return weight;
-}
-
 /// Blurs along y from `from` into `to`, then along x in place; the slice's edge repeats outwards.
 void blur(std::span<const float> from, std::span<float> to, std::int64_t nx, std::int64_t ny, double sigma)
 {
-    const auto weight = gaussian(sigma);
+    const auto weight = beam_kernel(sigma);
     const auto reach = static_cast<std::int64_t>(weight.size() / 2);
     for (std::int64_t y = 0; y < ny; ++y) {
         float* out = to.data() + y * nx;
@@ -125,6 +113,26 @@ void describe(Schema& schema, Microscope& m)
                     "standard deviation of the thickness of a slice");
 }
 
+std::vector<float> beam_kernel(double sigma)
+{
+    if (!(sigma > 0.0)) return {1.0F};
+    const double s = sigma * sigma;
+    const auto reach = static_cast<std::int64_t>(std::ceil(3.5 * sigma)) + 1;
+    std::vector<double> half(static_cast<std::size_t>(reach + 1));
+    double sum = 0.0;
+    for (std::size_t k = 0; k < half.size(); ++k) {
+        // Wide beams: the sampled Gaussian, the same to 1e-3, where I_k would overflow.
+        half[k] = s < 100.0 ? std::exp(-s) * std::cyl_bessel_i(static_cast<double>(k), s)
+                            : std::exp(-0.5 * static_cast<double>(k * k) / s);
+        sum += (k == 0 ? 1.0 : 2.0) * half[k];
+    }
+    std::vector<float> weight(static_cast<std::size_t>(2 * reach + 1));
+    for (std::int64_t k = -reach; k <= reach; ++k)
+        weight[static_cast<std::size_t>(k + reach)] =
+            static_cast<float>(half[static_cast<std::size_t>(std::abs(k))] / sum);
+    return weight;
+}
+
 std::vector<Vec3> slice_positions(const Microscope& microscope, std::int64_t n, std::uint64_t seed)
 {
     std::vector<Vec3> positions(static_cast<std::size_t>(n));
@@ -140,10 +148,7 @@ std::vector<Vec3> slice_positions(const Microscope& microscope, std::int64_t n, 
 void record_slice(const Microscope& m, std::span<const float> share, std::int64_t nx, std::int64_t ny, std::int64_t z,
                   std::int64_t nz, std::uint64_t seed, std::span<float> work, std::span<std::uint8_t> gray)
 {
-    if (m.blur > 0.0)
-        blur(share, work, nx, ny, m.blur);
-    else
-        std::copy(share.begin(), share.end(), work.begin());
+    blur(share, work, nx, ny, m.blur);
 
     Random curtain(seed, stream(Purpose::stripes, z, 0));
     const auto stripe = curtains(curtain, ny, m.stripe_width);

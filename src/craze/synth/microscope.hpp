@@ -25,6 +25,10 @@ struct Microscope {
 
 void describe(Schema& schema, Microscope& microscope);
 
+/// Weights of the blur along one axis, from -reach to +reach: the discrete Gaussian exp(-s) I_k(s), s = sigma^2, whose
+/// variance is sigma^2 for narrow beams too (Lindeberg 1990). {1} for sigma = 0.
+std::vector<float> beam_kernel(double sigma);
+
 /// Where each of n slices is taken: (drift x, drift y, depth), voxels. Both walks start and end on the straight line.
 std::vector<Vec3> slice_positions(const Microscope& microscope, std::int64_t n, std::uint64_t seed);
 

@@ -4,54 +4,43 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace craze::synth {
-
-namespace {
-
-/// Void share seen at distance x from the middle of a crack of opening t: a box seen through a voxel of width 1 and a
-/// Gaussian beam. All in voxels.
-double seen_share(double x, double t, double blur)
-{
-    const auto ramp = [blur](double s) {  // integral of the (blurred) step function
-        if (blur <= 0.0) return s > 0.0 ? s : 0.0;
-        const double q = s / blur;
-        return blur * (0.5 * q * std::erfc(-q / std::numbers::sqrt2) +
-                       std::exp(-0.5 * q * q) / std::sqrt(2.0 * std::numbers::pi));
-    };
-    const double outer = 0.5 * (t + 1.0), inner = 0.5 * (t - 1.0);
-    return ramp(x + outer) - ramp(x + inner) - ramp(x - inner) + ramp(x - outer);
-}
-
-}  // namespace
 
 Sight::Sight(const Microscope& m, double voxel_size, double threshold)
 {
     if (!(threshold > m.void_level && threshold <= m.matter && voxel_size > 0.0))
         throw InvalidInput(fmt::format("sight: the threshold must lie between void ({:g}) and matter ({:g}), got {:g}",
                                        m.void_level, m.matter, threshold));
-    const double contrast = m.matter - m.void_level;
-    const double least_share = (m.matter - threshold) / contrast;
-    double low = 0.0, high = 3.0 + 8.0 * m.blur;
-    for (int i = 0; i < 60; ++i) {
-        const double middle = 0.5 * (low + high);
-        (seen_share(0.0, middle, m.blur) > least_share ? high : low) = middle;
-    }
-    least_ = high * voxel_size;
+    constexpr double step = 0.02;
+    constexpr int positions = 100;
+    const auto beam = beam_kernel(m.blur);
+    const auto reach = static_cast<int>(beam.size() / 2);
     // Beyond a few voxels both walls are seen apart, and both measures grow straight on.
-    constexpr double step = 0.02, dx = 0.005;
-    const auto entries = static_cast<int>(std::ceil((3.0 + 8.0 * m.blur) / step)) + 1;
+    const auto entries = static_cast<int>(std::ceil((2.0 + 2.0 * reach) / step)) + 1;
+    const int n = entries / static_cast<int>(1.0 / step) + 4 * reach + 6;
+    std::vector<double> share(static_cast<std::size_t>(n));
     for (int e = 0; e < entries; ++e) {
-        const double t = e * step, reach = 0.5 * t + 0.5 + 5.0 * m.blur;
+        const double t = e * step;
         double width = 0.0, intensity = 0.0;
-        for (double x = 0.5 * dx; x < reach; x += dx) {
-            const double level = m.matter - contrast * seen_share(x, t, m.blur);
-            if (level >= threshold) break;
-            width += 2.0 * dx;
-            intensity += 2.0 * dx * (1.0 - level / threshold);
+        for (int p = 0; p < positions; ++p) {
+            const double middle = 0.5 * n + (p + 0.5) / positions;
+            for (int x = 0; x < n; ++x)
+                share[static_cast<std::size_t>(x)] =
+                    std::max(0.0, std::min(x + 1.0, middle + 0.5 * t) - std::max<double>(x, middle - 0.5 * t));
+            for (int x = reach; x < n - reach; ++x) {
+                double seen = 0.0;
+                for (int k = -reach; k <= reach; ++k)
+                    seen += beam[static_cast<std::size_t>(k + reach)] * share[static_cast<std::size_t>(x + k)];
+                const double level = std::floor(m.matter - (m.matter - m.void_level) * seen + 0.5);  // 8 bits
+                if (level >= threshold) continue;
+                width += 1.0 / positions;
+                intensity += (1.0 - level / threshold) / positions;
+            }
         }
+        if (width < 0.5) least_ = t * voxel_size;
         width_.push_back(width * voxel_size);
         intensity_.push_back(intensity * voxel_size);
     }

@@ -8,8 +8,8 @@
 
 namespace craze::synth {
 
-/// Eqs. 14 and 15 across a flat crack that faces an axis of the voxels, averaged over where the voxels lie: partial
-/// volume and blur are in it; noise, stripes and cleaning are not.
+/// Eqs. 14 and 15 across a flat crack that faces x or y, averaged over where it lies among the voxels: partial volume
+/// and blur are in it; noise, stripes and cleaning are not.
 class Sight {
 public:
     /// Sees everything as it is: both measures give the opening.
@@ -19,11 +19,11 @@ public:
     /// @throws InvalidInput  unless void < S <= matter
     Sight(const Microscope& microscope, double voxel_size, double threshold);
 
-    /// Width of the trough of gray below the threshold, m: T1 of a bond across the crack.
+    /// Voxels below the threshold across the crack, m: T1 of a bond across the crack.
     double width(double opening) const;
-    /// Integral of 1 - I/S over that trough, m: T2 of a bond across the crack.
+    /// Sum of 1 - I/S over them, m: T2 of a bond across the crack.
     double intensity(double opening) const;
-    /// Openings up to this leave no voxel below the threshold, m.
+    /// The opening that leaves half a voxel below the threshold on average, m: thinner cracks are not taken for cracks.
     double least_opening() const { return least_; }
 
 private:
