@@ -1,0 +1,28 @@
+// Which beams make the packing as stiff as the dense ceramic [3.1.2].
+
+#pragma once
+
+#include "craze/domain/domain.hpp"
+#include "craze/loading/response.hpp"
+#include "craze/loading/rig.hpp"
+
+namespace craze::loading {
+
+struct CalibrationOptions {
+    double nu_B = 0.30;          ///< kept as it is: it hardly matters
+    double first_guess = 0.345;  ///< r~ [Table 2]
+    double tolerance = 1e-3;     ///< on the means of E and nu over the three axes, relative
+    double strain = 1e-3;        ///< of the uniaxial tests
+    RigOptions rig;              ///< its residual is tightened to 1e-7
+};
+
+/// E_B and r~ for which uniaxial tension of the dense packing gives E_D (box strain) and nu_D (interior strain), as means
+/// over x, y and z. nu depends on r~ alone, so it is found first, by secants inside a bracket; E is proportional to E_B.
+/// @throws ComputationFailed  when no r~ in [0.05, 1] gives nu_D, with the range there is
+Calibration calibrate(const domain::Domain& dense, const mechanics::DenseMaterial& target, const CalibrationOptions& options);
+
+/// What given beams make of the packing: the same tests, nothing changed.
+Calibration measure_given(const domain::Domain& dense, const mechanics::DenseMaterial& target,
+                          const mechanics::BeamMaterial& beam, const CalibrationOptions& options);
+
+}  // namespace craze::loading

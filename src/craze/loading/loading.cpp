@@ -1,0 +1,90 @@
+#include "craze/loading/loading.hpp"
+
+#include "craze/core/errors.hpp"
+#include "craze/core/progress.hpp"
+#include "craze/loading/calibration.hpp"
+#include "craze/loading/material_library.hpp"
+#include "craze/loading/rig.hpp"
+#include "craze/loading/specimen.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+namespace craze::loading {
+namespace {
+
+Calibration find_beams(const domain::Domain& dense, const Settings& s)
+{
+    const mechanics::DenseMaterial target = dense_material(s);
+    CalibrationOptions options;
+    options.nu_B = s.beam.given.nu_B;
+    options.first_guess = s.beam.given.r_tilde;
+    options.tolerance = s.beam.tolerance;
+    options.rig = {s.face_reach, s.interior_margin, s.residual};
+    if (!s.beam.calibrate) return measure_given(dense, target, s.beam.given, options);
+    const std::string recipe = calibration_recipe(dense, target, options.nu_B, s.face_reach, s.interior_margin);
+    if (auto kept = find_calibration(recipe, s.beam.tolerance, s.beam.library)) return *kept;
+    Calibration calibration = calibrate(dense, target, options);
+    calibration.recipe = recipe;
+    if (!s.beam.library.empty()) keep_calibration(calibration, s.beam.library);
+    return calibration;
+}
+
+/// Tension and compression of one specimen along one axis make one row of [Table 3].
+void add_modulus(std::vector<Modulus>& moduli, const Curve& curve)
+{
+    const std::string name = specimen_name(curve.test.specimen);
+    const int axis = curve.test.axis;
+    auto row = std::find_if(moduli.begin(), moduli.end(), [&](const Modulus& m) { return m.specimen == name && m.axis == axis; });
+    if (row == moduli.end()) {
+        moduli.push_back({.specimen = name, .axis = axis});
+        row = moduli.end() - 1;
+    }
+    const Point& p = curve.points.back();
+    const double stress = p.stress[axis];
+    (p.program > 0.0 ? row->tension : row->compression) = stress / p.strain[axis];
+    if (p.program < 0.0) return;
+    row->face = stress / p.face_strain[axis];
+    row->interior = stress / p.interior_strain[axis];
+    row->nu = -0.5 * (p.interior_strain[(axis + 1) % 3] + p.interior_strain[(axis + 2) % 3]) / p.interior_strain[axis];
+}
+
+}  // namespace
+
+Response load(const domain::Discretisation& discretisation, const Settings& settings, const std::filesystem::path& folder)
+{
+    check(settings);
+    const Stopwatch watch;
+    Response response;
+    response.porosity = domain::discrete_porosity(discretisation);
+    response.calibration = find_beams(discretisation.dense, settings);
+    const auto& c = response.calibration;
+    say(fmt::format("loading: E_B {:.4g} GPa, r~ {:.4f} give E {:.4g} GPa, nu {:.4f} (isotropic to {:.2g} %)", c.beam.E_B * 1e-9,
+                    c.beam.r_tilde, c.E * 1e-9, c.nu, 100.0 * c.anisotropy));
+
+    // One specimen at a time, all its loadings together: a packing is held in memory once beside the dense one.
+    std::vector<Test> tests = plan(settings, discretisation.dense.box);
+    std::vector<std::string> specimens;
+    for (const Test& test : tests)
+        if (const auto name = specimen_name(test.specimen); std::find(specimens.begin(), specimens.end(), name) == specimens.end())
+            specimens.push_back(name);
+    std::vector<Curve> curves(tests.size());
+    for (const auto& name : specimens) {
+        const domain::Domain specimen = domain::with_defects(discretisation, parse_specimen(name));
+        Rig rig(specimen, c.beam, c.target, {settings.face_reach, settings.interior_margin, settings.residual});
+        for (std::size_t k = 0; k < tests.size(); ++k) {
+            if (specimen_name(tests[k].specimen) != name) continue;
+            check_interrupt();
+            curves[k] = rig.rest(tests[k]);
+        }
+    }
+    for (auto& curve : curves) {
+        if (curve.test.kind == Test::Kind::modulus) add_modulus(response.moduli, curve);
+        response.curves.push_back(std::move(curve));
+    }
+    response.seconds = watch.seconds();
+    return response;
+}
+
+}  // namespace craze::loading

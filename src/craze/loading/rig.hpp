@@ -1,0 +1,64 @@
+// A specimen clamped into the testing machine: made once, loaded many times.
+
+#pragma once
+
+#include "craze/loading/faces.hpp"
+#include "craze/loading/response.hpp"
+#include "craze/mechanics/equilibrium.hpp"
+
+#include <array>
+#include <functional>
+#include <optional>
+
+namespace craze::loading {
+
+struct RigOptions {
+    double face_reach = 1.05;       ///< Settings::face_reach
+    double interior_margin = 10.0;  ///< Settings::interior_margin
+    double residual = 1e-6;         ///< Settings::residual
+};
+
+/// What is drawn or kept of a state as a test goes by.
+struct Moment {
+    const Test& test;
+    const Point& point;
+    std::int64_t index;  ///< of the point on its curve
+    const mechanics::State& state;
+    const mechanics::Forces& forces;
+};
+using Watcher = std::function<void(const Moment&)>;
+
+class Rig {
+public:
+    /// @throws InvalidInput, ComputationFailed  when the domain or the beams cannot be loaded
+    Rig(const domain::Domain& domain, const mechanics::BeamMaterial& beam, const mechanics::DenseMaterial& dense,
+        const RigOptions& options);
+
+    const mechanics::Lattice& lattice() const { return lattice_; }
+    const Faces& faces() const { return faces_; }
+    const StrainGauge& gauge() const { return gauge_; }
+    const mechanics::DenseMaterial& dense() const { return dense_; }
+
+    /// Sides of the driven axes at program strain s: the least one held, the other at s factor times the edge.
+    mechanics::Constraints constraints(const Test& test, double s) const;
+    /// Everything that can be said of one state; work, K and what motion adds are left to the caller.
+    Point measure(const Test& test, double s, const mechanics::State& state, const mechanics::Forces& forces) const;
+
+    /// States of rest along the path of a test.
+    /// @throws ComputationFailed  with the strain reached and what to try
+    Curve rest(const Test& test, const Watcher& watch = {});
+
+    /// One state of rest, started from an earlier one where one is at hand.
+    mechanics::Equilibrium solve(const Test& test, double s, mechanics::State start);
+
+private:
+    mechanics::Lattice lattice_;
+    mechanics::DenseMaterial dense_;
+    RigOptions options_;
+    Faces faces_;
+    StrainGauge gauge_;
+    mechanics::EquilibriumSolver solver_;
+    std::array<std::optional<mechanics::State>, 3> small_;  ///< per unit of uniaxial strain: where the next test starts
+};
+
+}  // namespace craze::loading
