@@ -52,7 +52,8 @@ void add_modulus(std::vector<Modulus>& moduli, const Curve& curve)
 
 }  // namespace
 
-Response load(const domain::Discretisation& discretisation, const Settings& settings, const std::filesystem::path& folder)
+Response load(const domain::Discretisation& discretisation, const Settings& settings,
+              [[maybe_unused]] const std::filesystem::path& folder)
 {
     check(settings);
     const Stopwatch watch;

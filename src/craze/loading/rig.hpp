@@ -33,6 +33,8 @@ public:
     /// @throws InvalidInput, ComputationFailed  when the domain or the beams cannot be loaded
     Rig(const domain::Domain& domain, const mechanics::BeamMaterial& beam, const mechanics::DenseMaterial& dense,
         const RigOptions& options);
+    Rig(const Rig&) = delete;  // the solver keeps the lattice's address
+    Rig& operator=(const Rig&) = delete;
 
     const mechanics::Lattice& lattice() const { return lattice_; }
     const Faces& faces() const { return faces_; }

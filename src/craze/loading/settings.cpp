@@ -236,7 +236,7 @@ std::vector<Test> plan(const Settings& s, const Vec3& box)
             Test test;
             test.kind = Test::Kind::triaxial;
             test.specimen = parse_specimen(specimen);
-            test.name = specimen_name(test.specimen) + " triaxial";
+            test.name = fmt::format("{} triaxial", specimen_name(test.specimen));
             const double mean = (box.x + box.y + box.z) / 3.0;
             for (int a = 0; a < 3; ++a)
                 test.drive[static_cast<std::size_t>(a)] = {
@@ -253,7 +253,7 @@ std::vector<Test> plan(const Settings& s, const Vec3& box)
                         test.strength = strength;
                         test.crossings = s.fracture.crossings;
                         test.damping = s.fracture.damping;
-                        test.name += " " + format_quantity(strength, Dimension::pressure);
+                        test.name = fmt::format("{} {}", test.name, format_quantity(strength, Dimension::pressure));
                         return test;
                     };
                     for (const double end : {s.fracture.tension, -s.fracture.compression}) {
@@ -263,7 +263,7 @@ std::vector<Test> plan(const Settings& s, const Vec3& box)
                         tests.push_back(test);
                         if (!s.fracture.check_rate) continue;
                         test.crossings *= 2.0;
-                        test.name += " half rate";
+                        test.name = fmt::format("{} half rate", test.name);
                         tests.push_back(std::move(test));
                     }
                     if (s.fracture.cycles.empty()) continue;

@@ -55,9 +55,9 @@ std::string specimen_name(const domain::Defects& defects)
     const std::string kind = defects.pores ? "both" : "cracks";
     switch (defects.thickness) {
         case Thickness::T2: return kind;
-        case Thickness::T1: return kind + " T1";
-        case Thickness::closed: return kind + " closed";
-        case Thickness::constant: return kind + " " + format_quantity(defects.constant, Dimension::length);
+        case Thickness::T1: return fmt::format("{} T1", kind);
+        case Thickness::closed: return fmt::format("{} closed", kind);
+        case Thickness::constant: return fmt::format("{} {}", kind, format_quantity(defects.constant, Dimension::length));
     }
     return kind;
 }
