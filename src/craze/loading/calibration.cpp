@@ -32,17 +32,17 @@ public:
         Calibration::Trial trial;
         trial.r_tilde = beam.r_tilde;
         for (int axis = first_axis; axis < 3; ++axis) {
-            Test test;
-            test.axis = axis;
-            test.drive[static_cast<std::size_t>(axis)] = {false, 1.0};
+            Loading loading;
+            loading.axis = axis;
+            loading.drive[static_cast<std::size_t>(axis)] = {false, 1.0};
             auto& start = start_[static_cast<std::size_t>(axis)];
             if (!start) {
                 Vec3 strain{-target_.nu_D * options_.strain, -target_.nu_D * options_.strain, -target_.nu_D * options_.strain};
                 strain[axis] = options_.strain;
                 start = mechanics::affine_state(rig.lattice(), strain);
             }
-            auto rest = rig.solve(test, options_.strain, std::move(*start));
-            const Point p = rig.measure(test, options_.strain, rest.state, rest.forces);
+            auto rest = rig.solve(loading, options_.strain, std::move(*start));
+            const Point p = rig.measure(loading, options_.strain, rest.state, rest.forces);
             trial.E[axis] = p.stress[axis] / p.strain[axis];
             const int a = (axis + 1) % 3, b = (axis + 2) % 3;
             trial.nu[axis] = -0.5 * (p.interior_strain[a] + p.interior_strain[b]) / p.interior_strain[axis];

@@ -12,7 +12,7 @@ struct CalibrationOptions {
     double nu_B = 0.30;          ///< kept as it is: it hardly matters
     double first_guess = 0.345;  ///< r~ [Table 2]
     double tolerance = 1e-3;     ///< on the means of E and nu over the three axes, relative
-    double strain = 1e-3;        ///< of the uniaxial tests
+    double strain = 1e-3;        ///< of the uniaxial loadings
     RigOptions rig;              ///< its residual is tightened to 1e-7
 };
 
@@ -21,7 +21,7 @@ struct CalibrationOptions {
 /// @throws ComputationFailed  when no r~ in [0.05, 1] gives nu_D, with the range there is
 Calibration calibrate(const domain::Domain& dense, const mechanics::DenseMaterial& target, const CalibrationOptions& options);
 
-/// What given beams make of the packing: the same tests, nothing changed.
+/// What given beams make of the packing: the same loadings, nothing changed.
 Calibration measure_given(const domain::Domain& dense, const mechanics::DenseMaterial& target,
                           const mechanics::BeamMaterial& beam, const CalibrationOptions& options);
 

@@ -1,4 +1,4 @@
-// The six sides of a specimen: which elements a test holds or drives, and how far they have moved.
+// The six sides of a specimen: which elements a loading holds or drives, and how far they have moved.
 
 #pragma once
 

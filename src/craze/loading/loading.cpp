@@ -34,8 +34,8 @@ Calibration find_beams(const domain::Domain& dense, const Settings& s)
 /// Tension and compression of one specimen along one axis make one row of [Table 3].
 void add_modulus(std::vector<Modulus>& moduli, const Curve& curve)
 {
-    const std::string name = specimen_name(curve.test.specimen);
-    const int axis = curve.test.axis;
+    const std::string name = specimen_name(curve.loading.specimen);
+    const int axis = curve.loading.axis;
     auto row = std::find_if(moduli.begin(), moduli.end(), [&](const Modulus& m) { return m.specimen == name && m.axis == axis; });
     if (row == moduli.end()) {
         moduli.push_back({.specimen = name, .axis = axis});
@@ -65,23 +65,23 @@ Response load(const domain::Discretisation& discretisation, const Settings& sett
                     c.beam.r_tilde, c.E * 1e-9, c.nu, 100.0 * c.anisotropy));
 
     // One specimen at a time, all its loadings together: a packing is held in memory once beside the dense one.
-    std::vector<Test> tests = plan(settings, discretisation.dense.box);
+    std::vector<Loading> loadings = plan(settings, discretisation.dense.box);
     std::vector<std::string> specimens;
-    for (const Test& test : tests)
-        if (const auto name = specimen_name(test.specimen); std::find(specimens.begin(), specimens.end(), name) == specimens.end())
+    for (const Loading& loading : loadings)
+        if (const auto name = specimen_name(loading.specimen); std::find(specimens.begin(), specimens.end(), name) == specimens.end())
             specimens.push_back(name);
-    std::vector<Curve> curves(tests.size());
+    std::vector<Curve> curves(loadings.size());
     for (const auto& name : specimens) {
         const domain::Domain specimen = domain::with_defects(discretisation, parse_specimen(name));
         Rig rig(specimen, c.beam, c.target, {settings.face_reach, settings.interior_margin, settings.residual});
-        for (std::size_t k = 0; k < tests.size(); ++k) {
-            if (specimen_name(tests[k].specimen) != name) continue;
+        for (std::size_t k = 0; k < loadings.size(); ++k) {
+            if (specimen_name(loadings[k].specimen) != name) continue;
             check_interrupt();
-            curves[k] = rig.rest(tests[k]);
+            curves[k] = rig.rest(loadings[k]);
         }
     }
     for (auto& curve : curves) {
-        if (curve.test.kind == Test::Kind::modulus) add_modulus(response.moduli, curve);
+        if (curve.loading.kind == Loading::Kind::modulus) add_modulus(response.moduli, curve);
         response.curves.push_back(std::move(curve));
     }
     response.seconds = watch.seconds();

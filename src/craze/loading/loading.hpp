@@ -101,8 +101,8 @@ void check(const Settings& settings);
 mechanics::DenseMaterial dense_material(const Settings& settings);
 
 /// Every loading that the settings ask for, in the order they are run.
-/// @param box  edges of the specimen, m: a triaxial test moves all sides by the same displacement [4.2.1]
-std::vector<Test> plan(const Settings& settings, const Vec3& box);
+/// @param box  edges of the specimen, m: a triaxial loading moves all sides by the same displacement [4.2.1]
+std::vector<Loading> plan(const Settings& settings, const Vec3& box);
 
 /// Calibrates (or takes the given beams), makes each specimen once, runs each loading.
 /// @param folder  where states and restart files go as they come; empty: nowhere

@@ -1,9 +1,9 @@
-// What the virtual tests measured: the value that `loading` gives.
+// What the virtual loadings measured: the value that `loading` gives.
 
 #pragma once
 
 #include "craze/core/vec3.hpp"
-#include "craze/loading/test.hpp"
+#include "craze/loading/imposed.hpp"
 #include "craze/loading/theory.hpp"
 #include "craze/mechanics/material.hpp"
 
@@ -22,7 +22,7 @@ struct Point {
     Vec3 stress;            ///< mean force on the two sides over the initial section, Pa, positive in tension [Eq. 16]
     double eta = 0.0;       ///< density over the initial one, less 1 [Eq. 20]
     double pressure = 0.0;  ///< P_h, Pa [Eq. 19]
-    double bulk = 0.0;      ///< K = (1 + eta) dP/deta, Pa; triaxial tests only [Eq. 22]
+    double bulk = 0.0;      ///< K = (1 + eta) dP/deta, Pa; triaxial loadings only [Eq. 22]
     double closure = 0.0;   ///< gamma: share of contact beams in compression [Eq. 23]
     double cracked = 0.0;   ///< alpha: share of bonds that are contact beams [Eq. 25]
     std::int64_t broken = 0;  ///< beams turned into contact beams since the start
@@ -52,7 +52,7 @@ struct BrokenBond {
 };
 
 struct Curve {
-    Test test;
+    Loading loading;
     std::vector<Point> points;  ///< the first is the unloaded state
     std::vector<BrokenBond> broken;
     std::string stopped;        ///< why it ended before its path did; empty when it did not
@@ -72,9 +72,9 @@ struct Modulus {
     friend bool operator==(const Modulus&, const Modulus&) = default;
 };
 
-/// Strength of one fracture test.
+/// Strength of one fracture loading.
 struct Strength {
-    std::string test;
+    std::string loading;
     std::string specimen;
     int axis = 0;
     bool tension = true;

@@ -45,10 +45,10 @@ std::string csv(const std::vector<T>& rows)
     return text;
 }
 
-std::string file_name(const std::string& test)
+std::string file_name(const std::string& loading)
 {
     std::string name;
-    for (const char c : test) name += std::isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '-' || c == '+' ? c : '_';
+    for (const char c : loading) name += std::isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '-' || c == '+' ? c : '_';
     return name;
 }
 
@@ -58,9 +58,9 @@ void save(const Response& response, const std::filesystem::path& folder)
 {
     std::filesystem::create_directories(folder / "curves");
     for (const auto& curve : response.curves) {
-        io::write_text(folder / "curves" / (file_name(curve.test.name) + ".csv"), csv(curve.points));
+        io::write_text(folder / "curves" / (file_name(curve.loading.name) + ".csv"), csv(curve.points));
         if (!curve.broken.empty())
-            io::write_text(folder / "curves" / (file_name(curve.test.name) + "_broken_bonds.csv"), csv(curve.broken));
+            io::write_text(folder / "curves" / (file_name(curve.loading.name) + "_broken_bonds.csv"), csv(curve.broken));
     }
     io::write_text(folder / "response.json", as_json(response).dump(1) + "\n");
 }

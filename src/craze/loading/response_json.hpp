@@ -16,7 +16,7 @@ template <class V> void fields(V& v, domain::Defects& d)
 {
     v("pores", d.pores), v("cracks", d.cracks), v("thickness", d.thickness), v("constant", d.constant);
 }
-template <class V> void fields(V& v, Test& t)
+template <class V> void fields(V& v, Loading& t)
 {
     v("kind", t.kind), v("name", t.name), v("specimen", t.specimen), v("drive", t.drive), v("axis", t.axis);
     v("path", t.path), v("solver", t.solver), v("strength", t.strength), v("crossings", t.crossings);
@@ -37,7 +37,7 @@ template <class V> void fields(V& v, BrokenBond& b)
 }
 template <class V> void fields(V& v, Curve& c)
 {
-    v("test", c.test), v("points", c.points), v("broken", c.broken), v("stopped", c.stopped), v("seconds", c.seconds);
+    v("loading", c.loading), v("points", c.points), v("broken", c.broken), v("stopped", c.stopped), v("seconds", c.seconds);
 }
 template <class V> void fields(V& v, Modulus& m)
 {
@@ -46,7 +46,7 @@ template <class V> void fields(V& v, Modulus& m)
 }
 template <class V> void fields(V& v, Strength& s)
 {
-    v("test", s.test), v("specimen", s.specimen), v("axis", s.axis), v("tension", s.tension);
+    v("loading", s.loading), v("specimen", s.specimen), v("axis", s.axis), v("tension", s.tension);
     v("sigma_failure", s.sigma_failure), v("strength", s.strength), v("strain", s.strain);
     v("new_cracks", s.new_cracks), v("change", s.change);
 }

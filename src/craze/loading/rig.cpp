@@ -11,23 +11,23 @@
 namespace craze::loading {
 namespace {
 
-/// Transverse edges of a uniaxial test are expected to follow Poisson's ratio of the dense ceramic.
-Vec3 expected_strain(const Test& test, double s, double nu)
+/// Transverse edges of a uniaxial loading are expected to follow Poisson's ratio of the dense ceramic.
+Vec3 expected_strain(const Loading& loading, double s, double nu)
 {
     Vec3 strain;
     double driven = 0.0;
     for (int a = 0; a < 3; ++a)
-        if (const auto& drive = test.drive[static_cast<std::size_t>(a)]; !drive.free) driven += strain[a] = drive.factor * s;
+        if (const auto& drive = loading.drive[static_cast<std::size_t>(a)]; !drive.free) driven += strain[a] = drive.factor * s;
     for (int a = 0; a < 3; ++a)
-        if (test.drive[static_cast<std::size_t>(a)].free) strain[a] = -nu * driven;
+        if (loading.drive[static_cast<std::size_t>(a)].free) strain[a] = -nu * driven;
     return strain;
 }
 
-bool is_uniaxial(const Test& test)
+bool is_uniaxial(const Loading& loading)
 {
     int driven = 0;
-    for (const auto& drive : test.drive) driven += drive.free ? 0 : 1;
-    return driven == 1 && test.drive[static_cast<std::size_t>(test.axis)].factor == 1.0;
+    for (const auto& drive : loading.drive) driven += drive.free ? 0 : 1;
+    return driven == 1 && loading.drive[static_cast<std::size_t>(loading.axis)].factor == 1.0;
 }
 
 }  // namespace
@@ -43,11 +43,11 @@ Rig::Rig(const domain::Domain& domain, const mechanics::BeamMaterial& beam, cons
 {
 }
 
-mechanics::Constraints Rig::constraints(const Test& test, double s) const
+mechanics::Constraints Rig::constraints(const Loading& loading, double s) const
 {
     mechanics::Constraints imposed;
     for (int a = 0; a < 3; ++a) {
-        const auto& drive = test.drive[static_cast<std::size_t>(a)];
+        const auto& drive = loading.drive[static_cast<std::size_t>(a)];
         if (drive.free) continue;
         imposed.impose_normal(faces_.side(a, false), 0.0);
         imposed.impose_normal(faces_.side(a, true), drive.factor * s * lattice_.box[a]);
@@ -55,7 +55,7 @@ mechanics::Constraints Rig::constraints(const Test& test, double s) const
     return imposed;
 }
 
-Point Rig::measure(const Test& test, double s, const mechanics::State& state, const mechanics::Forces& forces) const
+Point Rig::measure(const Loading& loading, double s, const mechanics::State& state, const mechanics::Forces& forces) const
 {
     Point p;
     p.program = s;
@@ -66,7 +66,7 @@ Point Rig::measure(const Test& test, double s, const mechanics::State& state, co
     const Vec3& box = lattice_.box;
     double volume = 1.0;
     for (int a = 0; a < 3; ++a) {
-        const auto& drive = test.drive[static_cast<std::size_t>(a)];
+        const auto& drive = loading.drive[static_cast<std::size_t>(a)];
         if (!drive.free) {
             p.strain[a] = drive.factor * s;
             const double least = mechanics::face_force(faces_.side(a, false), forces.force);
@@ -90,32 +90,32 @@ Point Rig::measure(const Test& test, double s, const mechanics::State& state, co
     return p;
 }
 
-mechanics::Equilibrium Rig::solve(const Test& test, double s, mechanics::State start)
+mechanics::Equilibrium Rig::solve(const Loading& loading, double s, mechanics::State start)
 {
-    return solver_.solve(constraints(test, s), std::move(start));
+    return solver_.solve(constraints(loading, s), std::move(start));
 }
 
-Curve Rig::rest(const Test& test, const Watcher& watch)
+Curve Rig::rest(const Loading& loading, const Watcher& watch)
 {
     const Stopwatch watch_time;
     Curve curve;
-    curve.test = test;
+    curve.loading = loading;
     auto previous = mechanics::rest_state(lattice_);
     auto forces = mechanics::forces(lattice_, previous);
-    curve.points.push_back(measure(test, 0.0, previous, forces));
-    if (watch) watch({test, curve.points.back(), 0, previous, forces});
+    curve.points.push_back(measure(loading, 0.0, previous, forces));
+    if (watch) watch({loading, curve.points.back(), 0, previous, forces});
 
     mechanics::State before;  // the point before the previous one
     double peak = 0.0;
-    Progress progress(test.name, static_cast<std::int64_t>(test.path.size()));
-    for (std::size_t k = 0; k < test.path.size(); ++k) {
-        const double s = test.path[k], s_1 = k > 0 ? test.path[k - 1] : 0.0, s_2 = k > 1 ? test.path[k - 2] : 0.0;
+    Progress progress(loading.name, static_cast<std::int64_t>(loading.path.size()));
+    for (std::size_t k = 0; k < loading.path.size(); ++k) {
+        const double s = loading.path[k], s_1 = k > 0 ? loading.path[k - 1] : 0.0, s_2 = k > 1 ? loading.path[k - 2] : 0.0;
         mechanics::State start = previous;
-        auto& small = small_[static_cast<std::size_t>(test.axis)];
-        if (k == 0 && is_uniaxial(test) && small) {
+        auto& small = small_[static_cast<std::size_t>(loading.axis)];
+        if (k == 0 && is_uniaxial(loading) && small) {
             for (std::size_t d = 0; d < start.u.size(); ++d) start.u[d] = s * small->u[d];
         } else if (k == 0) {
-            start = mechanics::affine_state(lattice_, expected_strain(test, s, dense_.nu_D));
+            start = mechanics::affine_state(lattice_, expected_strain(loading, s, dense_.nu_D));
         } else if (k == 1 || s_1 == s_2) {
             const double scale = s_1 != 0.0 ? s / s_1 : 1.0;
             for (auto& u : start.u) u *= scale;
@@ -125,14 +125,14 @@ Curve Rig::rest(const Test& test, const Watcher& watch)
         }
         mechanics::Equilibrium equilibrium;
         try {
-            equilibrium = solver_.solve(constraints(test, s), std::move(start));
+            equilibrium = solver_.solve(constraints(loading, s), std::move(start));
         } catch (const ComputationFailed& error) {
-            throw ComputationFailed(fmt::format("{}: no rest found at program strain {:.4g} (reached {:.4g}): {}", test.name, s,
+            throw ComputationFailed(fmt::format("{}: no rest found at program strain {:.4g} (reached {:.4g}): {}", loading.name, s,
                                                 s_1, error.what()));
         }
         before = std::move(previous);
         previous = std::move(equilibrium.state);
-        Point p = measure(test, s, previous, equilibrium.forces);
+        Point p = measure(loading, s, previous, equilibrium.forces);
         p.residual = equilibrium.residual;
         p.iterations = equilibrium.iterations;
         const Point& last = curve.points.back();
@@ -141,20 +141,20 @@ Curve Rig::rest(const Test& test, const Watcher& watch)
             p.work += 0.5 * (p.stress[a] + last.stress[a]) * (p.strain[a] - last.strain[a]) * lattice_.box.x * lattice_.box.y *
                       lattice_.box.z;
         curve.points.push_back(p);
-        if (k == 0 && is_uniaxial(test) && !small) {
+        if (k == 0 && is_uniaxial(loading) && !small) {
             small = previous;
             for (auto& u : small->u) u /= s;
         }
-        if (watch) watch({test, curve.points.back(), static_cast<std::int64_t>(k) + 1, previous, equilibrium.forces});
+        if (watch) watch({loading, curve.points.back(), static_cast<std::int64_t>(k) + 1, previous, equilibrium.forces});
         progress.advance();
-        const double stress = std::abs(p.stress[test.axis]);
+        const double stress = std::abs(p.stress[loading.axis]);
         peak = std::max(peak, stress);
-        if (test.stop_drop < 1.0 && stress <= (1.0 - test.stop_drop) * peak) {
+        if (loading.stop_drop < 1.0 && stress <= (1.0 - loading.stop_drop) * peak) {
             curve.stopped = fmt::format("stress fell to {:.3g} of its peak", stress / peak);
             break;
         }
     }
-    if (test.kind == Test::Kind::triaxial) fill_bulk_modulus(curve.points);
+    if (loading.kind == Loading::Kind::triaxial) fill_bulk_modulus(curve.points);
     curve.seconds = watch_time.seconds();
     return curve;
 }

@@ -18,9 +18,9 @@ struct RigOptions {
     double residual = 1e-6;         ///< Settings::residual
 };
 
-/// What is drawn or kept of a state as a test goes by.
+/// What is drawn or kept of a state as a loading goes by.
 struct Moment {
-    const Test& test;
+    const Loading& loading;
     const Point& point;
     std::int64_t index;  ///< of the point on its curve
     const mechanics::State& state;
@@ -42,16 +42,16 @@ public:
     const mechanics::DenseMaterial& dense() const { return dense_; }
 
     /// Sides of the driven axes at program strain s: the least one held, the other at s factor times the edge.
-    mechanics::Constraints constraints(const Test& test, double s) const;
+    mechanics::Constraints constraints(const Loading& loading, double s) const;
     /// Everything that can be said of one state; work, K and what motion adds are left to the caller.
-    Point measure(const Test& test, double s, const mechanics::State& state, const mechanics::Forces& forces) const;
+    Point measure(const Loading& loading, double s, const mechanics::State& state, const mechanics::Forces& forces) const;
 
-    /// States of rest along the path of a test.
+    /// States of rest along the path of a loading.
     /// @throws ComputationFailed  with the strain reached and what to try
-    Curve rest(const Test& test, const Watcher& watch = {});
+    Curve rest(const Loading& loading, const Watcher& watch = {});
 
     /// One state of rest, started from an earlier one where one is at hand.
-    mechanics::Equilibrium solve(const Test& test, double s, mechanics::State start);
+    mechanics::Equilibrium solve(const Loading& loading, double s, mechanics::State start);
 
 private:
     mechanics::Lattice lattice_;
@@ -60,7 +60,7 @@ private:
     Faces faces_;
     StrainGauge gauge_;
     mechanics::EquilibriumSolver solver_;
-    std::array<std::optional<mechanics::State>, 3> small_;  ///< per unit of uniaxial strain: where the next test starts
+    std::array<std::optional<mechanics::State>, 3> small_;  ///< per unit of uniaxial strain: where the next loading starts
 };
 
 }  // namespace craze::loading

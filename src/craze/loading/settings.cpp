@@ -201,98 +201,98 @@ std::vector<double> through(const std::vector<double>& turns, std::int64_t point
     return path;
 }
 
-Test uniaxial_test(Test::Kind kind, const std::string& specimen, int axis, double end, std::int64_t points)
+Loading uniaxial_test(Loading::Kind kind, const std::string& specimen, int axis, double end, std::int64_t points)
 {
-    Test test;
-    test.kind = kind;
-    test.specimen = parse_specimen(specimen);
-    test.axis = axis;
-    test.drive[static_cast<std::size_t>(axis)] = {false, 1.0};
-    test.path = even(end, points);
-    const char* verb = kind == Test::Kind::modulus ? "modulus" : kind == Test::Kind::fracture ? "fracture" : "uniaxial";
-    test.name = fmt::format("{} {} {} {}", specimen_name(test.specimen), verb, "xyz"[axis], end > 0.0 ? "tension" : "compression");
-    return test;
+    Loading loading;
+    loading.kind = kind;
+    loading.specimen = parse_specimen(specimen);
+    loading.axis = axis;
+    loading.drive[static_cast<std::size_t>(axis)] = {false, 1.0};
+    loading.path = even(end, points);
+    const char* verb = kind == Loading::Kind::modulus ? "modulus" : kind == Loading::Kind::fracture ? "fracture" : "uniaxial";
+    loading.name = fmt::format("{} {} {} {}", specimen_name(loading.specimen), verb, "xyz"[axis], end > 0.0 ? "tension" : "compression");
+    return loading;
 }
 
 }  // namespace
 
-std::vector<Test> plan(const Settings& s, const Vec3& box)
+std::vector<Loading> plan(const Settings& s, const Vec3& box)
 {
-    std::vector<Test> tests;
+    std::vector<Loading> loadings;
     const auto axis_of = [](char c) { return c - 'x'; };
     if (s.moduli.run)
         for (const auto& specimen : or_all(s.moduli.specimens, s))
             for (const char axis : s.moduli.axes)
                 for (const double sign : {1.0, -1.0})
-                    tests.push_back(uniaxial_test(Test::Kind::modulus, specimen, axis_of(axis), sign * s.moduli.strain, 1));
+                    loadings.push_back(uniaxial_test(Loading::Kind::modulus, specimen, axis_of(axis), sign * s.moduli.strain, 1));
     if (s.uniaxial.run)
         for (const auto& specimen : or_all(s.uniaxial.specimens, s))
             for (const char axis : s.uniaxial.axes)
                 for (const double end : {s.uniaxial.tension, -s.uniaxial.compression})
                     if (end != 0.0)
-                        tests.push_back(uniaxial_test(Test::Kind::uniaxial, specimen, axis_of(axis), end, s.uniaxial.points));
+                        loadings.push_back(uniaxial_test(Loading::Kind::uniaxial, specimen, axis_of(axis), end, s.uniaxial.points));
     if (s.triaxial.run)
         for (const auto& specimen : or_all(s.triaxial.specimens, s)) {
-            Test test;
-            test.kind = Test::Kind::triaxial;
-            test.specimen = parse_specimen(specimen);
-            test.name = fmt::format("{} triaxial", specimen_name(test.specimen));
+            Loading loading;
+            loading.kind = Loading::Kind::triaxial;
+            loading.specimen = parse_specimen(specimen);
+            loading.name = fmt::format("{} triaxial", specimen_name(loading.specimen));
             const double mean = (box.x + box.y + box.z) / 3.0;
             for (int a = 0; a < 3; ++a)
-                test.drive[static_cast<std::size_t>(a)] = {
+                loading.drive[static_cast<std::size_t>(a)] = {
                     false, s.triaxial.sides == Settings::Triaxial::Sides::strain ? 1.0 : mean / box[a]};
-            for (const double eta : even(s.triaxial.eta, s.triaxial.points)) test.path.push_back(strain_at_density(test.drive, eta));
-            tests.push_back(std::move(test));
+            for (const double eta : even(s.triaxial.eta, s.triaxial.points)) loading.path.push_back(strain_at_density(loading.drive, eta));
+            loadings.push_back(std::move(loading));
         }
     if (s.fracture.run)
         for (const auto& specimen : or_all(s.fracture.specimens, s))
             for (const char axis : s.fracture.axes)
                 for (const double strength : s.fracture.strengths) {
-                    const auto in_motion = [&](Test test) {
-                        test.solver = Solver::motion;
-                        test.strength = strength;
-                        test.crossings = s.fracture.crossings;
-                        test.damping = s.fracture.damping;
-                        test.name = fmt::format("{} {}", test.name, format_quantity(strength, Dimension::pressure));
-                        return test;
+                    const auto in_motion = [&](Loading loading) {
+                        loading.solver = Solver::motion;
+                        loading.strength = strength;
+                        loading.crossings = s.fracture.crossings;
+                        loading.damping = s.fracture.damping;
+                        loading.name = fmt::format("{} {}", loading.name, format_quantity(strength, Dimension::pressure));
+                        return loading;
                     };
                     for (const double end : {s.fracture.tension, -s.fracture.compression}) {
                         if (end == 0.0) continue;
-                        auto test = in_motion(uniaxial_test(Test::Kind::fracture, specimen, axis_of(axis), end, s.fracture.points));
-                        test.stop_drop = s.fracture.stop_drop;
-                        tests.push_back(test);
+                        auto loading = in_motion(uniaxial_test(Loading::Kind::fracture, specimen, axis_of(axis), end, s.fracture.points));
+                        loading.stop_drop = s.fracture.stop_drop;
+                        loadings.push_back(loading);
                         if (!s.fracture.check_rate) continue;
-                        test.crossings *= 2.0;
-                        test.name = fmt::format("{} half rate", test.name);
-                        tests.push_back(std::move(test));
+                        loading.crossings *= 2.0;
+                        loading.name = fmt::format("{} half rate", loading.name);
+                        loadings.push_back(std::move(loading));
                     }
                     if (s.fracture.cycles.empty()) continue;
-                    Test test = uniaxial_test(Test::Kind::cycles, specimen, axis_of(axis), s.fracture.cycles.front(), 1);
+                    Loading loading = uniaxial_test(Loading::Kind::cycles, specimen, axis_of(axis), s.fracture.cycles.front(), 1);
                     std::vector<double> turns;
                     for (const double peak : s.fracture.cycles) turns.insert(turns.end(), {peak, 0.0});
                     const auto legs = static_cast<std::int64_t>(turns.size());
-                    test.path = through(turns, std::max<std::int64_t>(10, s.fracture.points / legs));
-                    test.name = fmt::format("{} cycles {}", specimen_name(test.specimen), axis);
-                    tests.push_back(in_motion(std::move(test)));
+                    loading.path = through(turns, std::max<std::int64_t>(10, s.fracture.points / legs));
+                    loading.name = fmt::format("{} cycles {}", specimen_name(loading.specimen), axis);
+                    loadings.push_back(in_motion(std::move(loading)));
                 }
     for (const auto& program : s.programs) {
-        Test test;
-        test.kind = Test::Kind::program;
-        test.name = program.name;
-        test.specimen = parse_specimen(program.specimen);
-        test.drive = drives_of(program);
+        Loading loading;
+        loading.kind = Loading::Kind::program;
+        loading.name = program.name;
+        loading.specimen = parse_specimen(program.specimen);
+        loading.drive = drives_of(program);
         for (int a = 2; a >= 0; --a)
-            if (!test.drive[static_cast<std::size_t>(a)].free && test.drive[static_cast<std::size_t>(a)].factor != 0.0) test.axis = a;
-        test.path = through(program.turns, program.points);
-        test.solver = program.motion ? Solver::motion : Solver::equilibrium;
-        if (program.strength > 0.0) test.strength = program.strength;
-        test.crossings = program.crossings;
-        test.damping = program.damping;
-        test.stop_drop = program.stop_drop;
-        test.stop_damage = program.stop_damage;
-        tests.push_back(std::move(test));
+            if (!loading.drive[static_cast<std::size_t>(a)].free && loading.drive[static_cast<std::size_t>(a)].factor != 0.0) loading.axis = a;
+        loading.path = through(program.turns, program.points);
+        loading.solver = program.motion ? Solver::motion : Solver::equilibrium;
+        if (program.strength > 0.0) loading.strength = program.strength;
+        loading.crossings = program.crossings;
+        loading.damping = program.damping;
+        loading.stop_drop = program.stop_drop;
+        loading.stop_damage = program.stop_damage;
+        loadings.push_back(std::move(loading));
     }
-    return tests;
+    return loadings;
 }
 
 }  // namespace craze::loading

@@ -57,9 +57,9 @@ Json summary(const Response& response)
     const Elastic dense{target.E_D, target.nu_D};
     Json triaxial = Json::object();
     for (const auto& curve : response.curves) {
-        if (curve.test.kind != Test::Kind::triaxial || curve.points.size() < 2) continue;
+        if (curve.loading.kind != Loading::Kind::triaxial || curve.points.size() < 2) continue;
         const Point &first = curve.points.front(), &last = curve.points.back();
-        triaxial[specimen_name(curve.test.specimen)] = {{"K_first_Pa", first.bulk},
+        triaxial[specimen_name(curve.loading.specimen)] = {{"K_first_Pa", first.bulk},
                                                         {"K_last_Pa", last.bulk},
                                                         {"K_first_over_dense", first.bulk / dense.bulk()},
                                                         {"eta_last", last.eta},
@@ -71,7 +71,7 @@ Json summary(const Response& response)
 
     Json strengths = Json::array();
     for (const auto& u : response.strengths) {
-        Json row{{"test", u.test},         {"specimen", u.specimen},
+        Json row{{"loading", u.loading},         {"specimen", u.specimen},
                  {"axis", std::string(1, "xyz"[u.axis])}, {"load", u.tension ? "tension" : "compression"},
                  {"sigma_failure_Pa", u.sigma_failure},   {"strength_Pa", u.strength},
                  {"strain", u.strain},     {"new_contact_beams", u.new_cracks}};
@@ -89,7 +89,7 @@ Json summary(const Response& response)
 
     Json curves = Json::array();
     for (const auto& curve : response.curves) {
-        Json row{{"name", curve.test.name}, {"points", curve.points.size()}, {"seconds", curve.seconds}};
+        Json row{{"name", curve.loading.name}, {"points", curve.points.size()}, {"seconds", curve.seconds}};
         if (!curve.stopped.empty()) row["stopped"] = curve.stopped;
         curves.push_back(std::move(row));
     }

@@ -1,4 +1,4 @@
-// What theory says of pores and cracks in an elastic solid, to set beside what the virtual tests measure.
+// What theory says of pores and cracks in an elastic solid, to set beside what the virtual loadings measure.
 
 #pragma once
 

@@ -26,14 +26,14 @@ enum class Solver {
 };
 
 /// A loading: the program's strain goes along `path` from 0, the three axes follow as `drive` says.
-struct Test {
+struct Loading {
     enum class Kind { modulus, uniaxial, triaxial, fracture, cycles, program };
 
     Kind kind = Kind::uniaxial;
     std::string name;               ///< unique: "both, uniaxial z, compression"
     domain::Defects specimen;
     std::array<Drive, 3> drive;
-    int axis = 2;                   ///< axial direction of uniaxial tests: 0, 1, 2
+    int axis = 2;                   ///< axial direction of uniaxial loadings: 0, 1, 2
     std::vector<double> path;       ///< program strain of each point, positive in tension; the start 0 is implied
     Solver solver = Solver::equilibrium;
 

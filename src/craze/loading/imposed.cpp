@@ -1,4 +1,4 @@
-#include "craze/loading/test.hpp"
+#include "craze/loading/imposed.hpp"
 
 #include "craze/core/errors.hpp"
 
