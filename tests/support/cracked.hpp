@@ -20,7 +20,8 @@ inline bool cuts(const Penny& penny, const Vec3& a, const Vec3& b)
     return norm(a + (b - a) * (da / (da - db)) - penny.centre) < penny.radius;
 }
 
-/// Marks the bonds and near pairs that pennies cut (T1 = T2 = the largest aperture), and elements inside balls as pores.
+/// Marks the bonds and near pairs that pennies cut (T1 = T2 = the largest aperture), and elements inside balls as
+/// pores.
 inline domain::Discretisation with_pennies(domain::Domain dense, const std::vector<Penny>& pennies,
                                            const std::vector<std::pair<Vec3, double>>& balls = {})
 {
@@ -32,7 +33,8 @@ inline domain::Discretisation with_pennies(domain::Domain dense, const std::vect
         for (const auto& [centre, radius] : balls) inside = inside || norm(e.centre(k) - centre) < radius;
         d.in_pore.push_back(inside ? 1 : 0);
     }
-    const auto mark = [&](const std::vector<std::int32_t>& i, const std::vector<std::int32_t>& j, domain::PairCracks& c) {
+    const auto mark = [&](const std::vector<std::int32_t>& i, const std::vector<std::int32_t>& j,
+                          domain::PairCracks& c) {
         for (std::size_t b = 0; b < i.size(); ++b) {
             double thickness = 0.0;
             std::uint8_t cut = 0;
@@ -47,7 +49,8 @@ inline domain::Discretisation with_pennies(domain::Domain dense, const std::vect
 }
 
 /// Pennies at random places and in random directions, of one radius, sum a^3 / V = density, within the box.
-inline std::vector<Penny> random_pennies(const Vec3& box, double radius, double density, double aperture, std::uint64_t seed)
+inline std::vector<Penny> random_pennies(const Vec3& box, double radius, double density, double aperture,
+                                         std::uint64_t seed)
 {
     std::vector<Penny> pennies;
     const double volume = box.x * box.y * box.z;

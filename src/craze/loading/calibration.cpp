@@ -13,7 +13,7 @@ namespace craze::loading {
 namespace {
 
 constexpr double least_ratio = 0.05, most_ratio = 1.0;
-constexpr double usual_slope = -0.37;  // d nu / d r~ near Table 2, for the second trial
+constexpr double usual_slope = -0.37;  // d nu / d r~ near Table 2
 
 double mean(const Vec3& v) { return (v.x + v.y + v.z) / 3.0; }
 
@@ -37,7 +37,8 @@ public:
             loading.drive[static_cast<std::size_t>(axis)] = {false, 1.0};
             auto& start = start_[static_cast<std::size_t>(axis)];
             if (!start) {
-                Vec3 strain{-target_.nu_D * options_.strain, -target_.nu_D * options_.strain, -target_.nu_D * options_.strain};
+                Vec3 strain{-target_.nu_D * options_.strain, -target_.nu_D * options_.strain,
+                            -target_.nu_D * options_.strain};
                 strain[axis] = options_.strain;
                 start = mechanics::affine_state(rig.lattice(), strain);
             }
@@ -69,7 +70,8 @@ void conclude(Calibration& c, double scale)
 
 }  // namespace
 
-Calibration calibrate(const domain::Domain& dense, const mechanics::DenseMaterial& target, const CalibrationOptions& options)
+Calibration calibrate(const domain::Domain& dense, const mechanics::DenseMaterial& target,
+                      const CalibrationOptions& options)
 {
     Calibration c;
     c.target = target;
@@ -78,10 +80,9 @@ Calibration calibrate(const domain::Domain& dense, const mechanics::DenseMateria
     Tensions tensions(dense, target, options);
     Progress progress("calibration", 7);
 
-    // nu falls as r~ rises: low < sought < high, each with its excess of nu over nu_D once it is known.
-    double low = least_ratio, high = most_ratio;
-    std::optional<double> last_ratio, last_excess;
-    double offset = 0.0;  // of the mean nu from the one along z
+    // nu falls as r~ rises: low < sought < high, known from trials along all axes. In between, far from the target, one
+    // axis shows the way: its slope, and how far it was from the mean.
+    double low = least_ratio, high = most_ratio, slope = usual_slope, offset = 0.0;
     bool all_axes = true;
     for (int trial = 0; trial < 40; ++trial) {
         c.path.push_back(tensions.run(beam, all_axes ? 0 : 2));
@@ -95,26 +96,27 @@ Calibration calibrate(const domain::Domain& dense, const mechanics::DenseMateria
             conclude(c, target.E_D / mean(now.E));
             return c;
         }
-        (excess > 0.0 ? low : high) = beam.r_tilde;
-        double slope = usual_slope;
-        if (last_ratio && *last_ratio != beam.r_tilde) slope = (excess - *last_excess) / (beam.r_tilde - *last_ratio);
-        double next = slope < 0.0 ? beam.r_tilde - excess / slope : 0.5 * (low + high);
-        if (!(next > low && next < high)) {
-            if (next >= most_ratio && high == most_ratio && beam.r_tilde < most_ratio) next = most_ratio;
-            else if (next <= least_ratio && low == least_ratio && beam.r_tilde > least_ratio) next = least_ratio;
-            else next = 0.5 * (low + high);
-        }
-        if (high - low < 1e-12 || (excess > 0.0 && beam.r_tilde == most_ratio) || (excess < 0.0 && beam.r_tilde == least_ratio))
-            throw ComputationFailed(fmt::format(
-                "calibration: no beam radius ratio in [{}, {}] gives nu_D = {} (r~ = {:.4g} gives {:.4g}); a packing of other "
-                "cardinality, or another nu_D, might",
-                least_ratio, most_ratio, target.nu_D, beam.r_tilde, now.nu.z + offset));
-        last_ratio = beam.r_tilde;
-        last_excess = excess;
-        all_axes = std::abs(excess) <= 0.005 * target.nu_D;  // near: the next trial is likely the last
+        const double r = beam.r_tilde;
+        if ((excess > 0.0 && r == most_ratio) || (excess < 0.0 && r == least_ratio))
+            throw ComputationFailed(
+                fmt::format("calibration: no beam radius ratio in [{}, {}] gives nu_D = {} (r~ = {:.4g} gives {:.4g}); "
+                            "a packing of other "
+                            "cardinality, or another nu_D, might",
+                            least_ratio, most_ratio, target.nu_D, r, now.nu.z + offset));
+        if (all_axes) (excess > 0.0 ? low : high) = r;
+        if (trial > 0)
+            if (const auto& last = c.path[c.path.size() - 2]; std::abs(r - last.r_tilde) > 1e-5) {
+                const double measured = (now.nu.z - last.nu.z) / (r - last.r_tilde);
+                if (measured < 0.1 * usual_slope) slope = measured;
+            }
+        double next = std::clamp(r - excess / slope, least_ratio, most_ratio);
+        const bool known = (next == low && low > least_ratio) || (next == high && high < most_ratio);
+        if (next < low || next > high || known) next = 0.5 * (low + high);
+        all_axes = std::abs(excess) <= 0.005 * target.nu_D || next == least_ratio || next == most_ratio || trial > 6;
         beam.r_tilde = next;
     }
-    throw ComputationFailed("calibration: 40 trials did not settle on a beam radius ratio; loosen loading.beam.tolerance");
+    throw ComputationFailed(
+        "calibration: 40 trials did not settle on a beam radius ratio; loosen loading.beam.tolerance");
 }
 
 Calibration measure_given(const domain::Domain& dense, const mechanics::DenseMaterial& target,

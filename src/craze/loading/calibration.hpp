@@ -16,10 +16,12 @@ struct CalibrationOptions {
     RigOptions rig;              ///< its residual is tightened to 1e-7
 };
 
-/// E_B and r~ for which uniaxial tension of the dense packing gives E_D (box strain) and nu_D (interior strain), as means
-/// over x, y and z. nu depends on r~ alone, so it is found first, by secants inside a bracket; E is proportional to E_B.
+/// E_B and r~ for which uniaxial tension of the dense packing gives E_D (box strain) and nu_D (interior strain), as
+/// means over x, y and z. nu depends on r~ alone, so it is found first, by secants inside a bracket; E is proportional
+/// to E_B.
 /// @throws ComputationFailed  when no r~ in [0.05, 1] gives nu_D, with the range there is
-Calibration calibrate(const domain::Domain& dense, const mechanics::DenseMaterial& target, const CalibrationOptions& options);
+Calibration calibrate(const domain::Domain& dense, const mechanics::DenseMaterial& target,
+                      const CalibrationOptions& options);
 
 /// What given beams make of the packing: the same loadings, nothing changed.
 Calibration measure_given(const domain::Domain& dense, const mechanics::DenseMaterial& target,

@@ -39,11 +39,14 @@ Faces find_faces(const mechanics::Lattice& lattice, double reach)
             const auto s = static_cast<std::size_t>(2 * axis + (most ? 1 : 0));
             faces.sides[s] = mechanics::find_face(lattice, axis, most, reach);
             const auto& elements = faces.sides[s].elements;
-            if (std::none_of(elements.begin(), elements.end(), [&](std::int32_t e) { return bearing[static_cast<std::size_t>(e)] != 0; }))
-                throw ComputationFailed(fmt::format(
-                    "side {}: only loose elements reach this wall of the {:.3g} x {:.3g} x {:.3g} m box, so nothing can "
-                    "be held or driven there; check that the box fits the elements, or raise loading.face_reach (now {})",
-                    side_names[s], lattice.box.x, lattice.box.y, lattice.box.z, reach));
+            if (std::none_of(elements.begin(), elements.end(),
+                             [&](std::int32_t e) { return bearing[static_cast<std::size_t>(e)] != 0; }))
+                throw ComputationFailed(
+                    fmt::format("side {}: only loose elements reach this wall of the {:.3g} x {:.3g} x {:.3g} m box, "
+                                "so nothing can "
+                                "be held or driven there; check that the box fits the elements, or raise "
+                                "loading.face_reach (now {})",
+                                side_names[s], lattice.box.x, lattice.box.y, lattice.box.z, reach));
         }
     return faces;
 }

@@ -30,18 +30,19 @@ struct Loading {
     enum class Kind { modulus, uniaxial, triaxial, fracture, cycles, program };
 
     Kind kind = Kind::uniaxial;
-    std::string name;               ///< unique: "both, uniaxial z, compression"
+    std::string name;  ///< unique: "both, uniaxial z, compression"
     domain::Defects specimen;
     std::array<Drive, 3> drive;
-    int axis = 2;                   ///< axial direction of uniaxial loadings: 0, 1, 2
-    std::vector<double> path;       ///< program strain of each point, positive in tension; the start 0 is implied
+    int axis = 2;              ///< axial direction of uniaxial loadings: 0, 1, 2
+    std::vector<double> path;  ///< program strain of each point, positive in tension; the start 0 is implied
     Solver solver = Solver::equilibrium;
 
-    double strength = std::numeric_limits<double>::infinity();  ///< sigma_failure, Pa; infinite: bonds never break [Eq. 24]
-    double crossings = 40.0;        ///< motion: duration of the path in wave crossings of the axial edge, > 0
-    double damping = 1.0;           ///< motion: times the reference damping
-    double stop_drop = 1.0;         ///< ends after the axial stress has fallen by this share of its peak; 1: never
-    double stop_damage = 1.0;       ///< ends when this share of the beams has broken; 1: never
+    double strength =
+        std::numeric_limits<double>::infinity();  ///< sigma_failure, Pa; infinite: bonds never break [Eq. 24]
+    double crossings = 40.0;   ///< motion: duration of the path in wave crossings of the axial edge, > 0
+    double damping = 1.0;      ///< motion: times the reference damping
+    double stop_drop = 1.0;    ///< ends after the axial stress has fallen by this share of its peak; 1: never
+    double stop_damage = 1.0;  ///< ends when this share of the beams has broken; 1: never
 };
 
 /// Strain s of the program at which a triaxial drive has compacted the box to density eta = (V0 - V)/V [Eqs. 20, 21].

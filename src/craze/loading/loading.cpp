@@ -36,7 +36,8 @@ void add_modulus(std::vector<Modulus>& moduli, const Curve& curve)
 {
     const std::string name = specimen_name(curve.loading.specimen);
     const int axis = curve.loading.axis;
-    auto row = std::find_if(moduli.begin(), moduli.end(), [&](const Modulus& m) { return m.specimen == name && m.axis == axis; });
+    auto row = std::find_if(moduli.begin(), moduli.end(),
+                            [&](const Modulus& m) { return m.specimen == name && m.axis == axis; });
     if (row == moduli.end()) {
         moduli.push_back({.specimen = name, .axis = axis});
         row = moduli.end() - 1;
@@ -61,14 +62,15 @@ Response load(const domain::Discretisation& discretisation, const Settings& sett
     response.porosity = domain::discrete_porosity(discretisation);
     response.calibration = find_beams(discretisation.dense, settings);
     const auto& c = response.calibration;
-    say(fmt::format("loading: E_B {:.4g} GPa, r~ {:.4f} give E {:.4g} GPa, nu {:.4f} (isotropic to {:.2g} %)", c.beam.E_B * 1e-9,
-                    c.beam.r_tilde, c.E * 1e-9, c.nu, 100.0 * c.anisotropy));
+    say(fmt::format("loading: E_B {:.4g} GPa, r~ {:.4f} give E {:.4g} GPa, nu {:.4f} (isotropic to {:.2g} %)",
+                    c.beam.E_B * 1e-9, c.beam.r_tilde, c.E * 1e-9, c.nu, 100.0 * c.anisotropy));
 
     // One specimen at a time, all its loadings together: a packing is held in memory once beside the dense one.
     std::vector<Loading> loadings = plan(settings, discretisation.dense.box);
     std::vector<std::string> specimens;
     for (const Loading& loading : loadings)
-        if (const auto name = specimen_name(loading.specimen); std::find(specimens.begin(), specimens.end(), name) == specimens.end())
+        if (const auto name = specimen_name(loading.specimen);
+            std::find(specimens.begin(), specimens.end(), name) == specimens.end())
             specimens.push_back(name);
     std::vector<Curve> curves(loadings.size());
     for (const auto& name : specimens) {

@@ -36,8 +36,8 @@ void describe(Schema& schema, Program& program);
 
 struct Settings {
     struct Dense {
-        std::string material = "8YSZ";                ///< of the library
-        std::optional<double> E_D, nu_D, rho_D;       ///< instead of the library's, Pa, -, kg/m3
+        std::string material = "8YSZ";           ///< of the library
+        std::optional<double> E_D, nu_D, rho_D;  ///< instead of the library's, Pa, -, kg/m3
     } dense;
     struct Beam {
         bool calibrate = true;
@@ -76,12 +76,12 @@ struct Settings {
         std::string axes = "x";
         std::vector<double> strengths{10e9};  ///< sigma_failure, Pa [Table 4]
         double tension = 3e-3, compression = 8e-3;
-        double crossings = 40.0;    ///< wave crossings of the specimen in the whole path
+        double crossings = 40.0;  ///< wave crossings of the specimen in the whole path
         double damping = 1.0;
         double stop_drop = 0.5;
         std::int64_t points = 200;
-        bool check_rate = false;    ///< run again at half the rate and say how far strength moves
-        std::vector<double> cycles; ///< peaks of strain, signed; empty: no cycles
+        bool check_rate = false;     ///< run again at half the rate and say how far strength moves
+        std::vector<double> cycles;  ///< peaks of strain, signed; empty: no cycles
     } fracture;
     std::vector<Program> programs;
 

@@ -16,7 +16,8 @@ Json open_library(const std::filesystem::path& file)
     if (file.empty() || !std::filesystem::exists(file)) return Json::object();
     try {
         Json library = Json::parse(io::read_text(file));
-        if (!library.is_object()) throw InvalidInput(fmt::format("{}: needed a JSON object with \"materials\"", file.string()));
+        if (!library.is_object())
+            throw InvalidInput(fmt::format("{}: needed a JSON object with \"materials\"", file.string()));
         return library;
     } catch (const Json::exception& error) {
         throw InvalidInput(fmt::format("{}: not a material library: {}", file.string(), error.what()));
@@ -34,15 +35,20 @@ mechanics::DenseMaterial find_material(const std::string& name, const std::files
             names.push_back(key);
             if (key != name) continue;
             try {
-                return {m.at("young_modulus").get<double>(), m.at("poisson_ratio").get<double>(), m.at("density").get<double>()};
+                return {m.at("young_modulus").get<double>(), m.at("poisson_ratio").get<double>(),
+                        m.at("density").get<double>()};
             } catch (const Json::exception& error) {
-                throw InvalidInput(fmt::format("{}: material \"{}\" needs the numbers young_modulus (Pa), poisson_ratio and "
-                                               "density (kg/m3): {}", file.string(), name, error.what()));
+                throw InvalidInput(
+                    fmt::format("{}: material \"{}\" needs the numbers young_modulus (Pa), poisson_ratio and "
+                                "density (kg/m3): {}",
+                                file.string(), name, error.what()));
             }
         }
     }
-    throw InvalidInput(fmt::format("loading.dense.material: no \"{}\" in the library; there is {}; or give young_modulus, "
-                                   "poisson_ratio and density yourself", name, fmt::join(names, ", ")));
+    throw InvalidInput(
+        fmt::format("loading.dense.material: no \"{}\" in the library; there is {}; or give young_modulus, "
+                    "poisson_ratio and density yourself",
+                    name, fmt::join(names, ", ")));
 }
 
 std::string calibration_recipe(const domain::Domain& dense, const mechanics::DenseMaterial& target, double nu_B,
@@ -58,7 +64,8 @@ std::string calibration_recipe(const domain::Domain& dense, const mechanics::Den
     return hash.digest();
 }
 
-std::optional<Calibration> find_calibration(const std::string& recipe, double tolerance, const std::filesystem::path& file)
+std::optional<Calibration> find_calibration(const std::string& recipe, double tolerance,
+                                            const std::filesystem::path& file)
 {
     const Json library = open_library(file);
     if (!library.contains("calibrations") || !library.at("calibrations").contains(recipe)) return {};
@@ -66,7 +73,8 @@ std::optional<Calibration> find_calibration(const std::string& recipe, double to
     try {
         read_json(library.at("calibrations").at(recipe), kept);
     } catch (const Json::exception& error) {
-        throw InvalidInput(fmt::format("{}: calibration {} is damaged ({}); delete it to calibrate anew", file.string(), recipe, error.what()));
+        throw InvalidInput(fmt::format("{}: calibration {} is damaged ({}); delete it to calibrate anew", file.string(),
+                                       recipe, error.what()));
     }
     if (!(kept.error <= tolerance)) return {};
     kept.from_library = true;

@@ -27,14 +27,14 @@ struct Point {
     double cracked = 0.0;   ///< alpha: share of bonds that are contact beams [Eq. 25]
     std::int64_t broken = 0;  ///< beams turned into contact beams since the start
 
-    double work = 0.0;       ///< of the driven sides since the start, J
-    double elastic = 0.0;    ///< stored in bonds and contacts, J
-    double kinetic = 0.0;    ///< J
-    double damped = 0.0;     ///< lost to damping since the start, J
-    double fracture = 0.0;   ///< lost when bonds broke since the start, J
-    double imbalance = 0.0;  ///< difference of the forces on opposite driven sides over their mean
-    double residual = 0.0;   ///< of equilibrium, over the driving forces; 0 in motion
-    double time = 0.0;       ///< of motion, s
+    double work = 0.0;            ///< of the driven sides since the start, J
+    double elastic = 0.0;         ///< stored in bonds and contacts, J
+    double kinetic = 0.0;         ///< J
+    double damped = 0.0;          ///< lost to damping since the start, J
+    double fracture = 0.0;        ///< lost when bonds broke since the start, J
+    double imbalance = 0.0;       ///< difference of the forces on opposite driven sides over their mean
+    double residual = 0.0;        ///< of equilibrium, over the driving forces; 0 in motion
+    double time = 0.0;            ///< of motion, s
     std::int64_t iterations = 0;  ///< of the linear solver, or steps of motion, since the last point
 
     friend bool operator==(const Point&, const Point&) = default;
@@ -55,19 +55,19 @@ struct Curve {
     Loading loading;
     std::vector<Point> points;  ///< the first is the unloaded state
     std::vector<BrokenBond> broken;
-    std::string stopped;        ///< why it ended before its path did; empty when it did not
-    double seconds = 0.0;       ///< wall time
+    std::string stopped;   ///< why it ended before its path did; empty when it did not
+    double seconds = 0.0;  ///< wall time
 };
 
 /// Elastic constants at small strain along one axis [Table 3].
 struct Modulus {
     std::string specimen;
     int axis = 0;
-    double tension = 0.0;          ///< E = stress over box strain, Pa
-    double compression = 0.0;      ///< Pa
-    double face = 0.0;             ///< E in tension over face strain, Pa
-    double interior = 0.0;         ///< E in tension over interior strain, Pa
-    double nu = 0.0;               ///< mean of both transverse directions, from interior strains, in tension
+    double tension = 0.0;      ///< E = stress over box strain, Pa
+    double compression = 0.0;  ///< Pa
+    double face = 0.0;         ///< E in tension over face strain, Pa
+    double interior = 0.0;     ///< E in tension over interior strain, Pa
+    double nu = 0.0;           ///< mean of both transverse directions, from interior strains, in tension
 
     friend bool operator==(const Modulus&, const Modulus&) = default;
 };
@@ -78,11 +78,11 @@ struct Strength {
     std::string specimen;
     int axis = 0;
     bool tension = true;
-    double sigma_failure = 0.0;   ///< bond strength, Pa
-    double strength = 0.0;        ///< UTS or UCS, Pa, positive [Table 4]
-    double strain = 0.0;          ///< box strain at the peak
-    double new_cracks = 0.0;      ///< alpha at the end less alpha at the start
-    double change = -1.0;         ///< relative change when the rate was halved; negative: not asked for
+    double sigma_failure = 0.0;  ///< bond strength, Pa
+    double strength = 0.0;       ///< UTS or UCS, Pa, positive [Table 4]
+    double strain = 0.0;         ///< box strain at the peak
+    double new_cracks = 0.0;     ///< alpha at the end less alpha at the start
+    double change = -1.0;        ///< relative change when the rate was halved; negative: not asked for
 
     friend bool operator==(const Strength&, const Strength&) = default;
 };
@@ -91,7 +91,7 @@ struct Strength {
 struct Calibration {
     struct Trial {
         double r_tilde = 0.0;
-        Vec3 E;   ///< with the E_B of that trial, along x, y, z, Pa; 0 where not measured
+        Vec3 E;  ///< with the E_B of that trial, along x, y, z, Pa; 0 where not measured
         Vec3 nu;
         friend bool operator==(const Trial&, const Trial&) = default;
     };
@@ -112,7 +112,7 @@ struct Response {
     std::vector<Modulus> moduli;
     std::vector<Strength> strengths;
     std::vector<Curve> curves;
-    double porosity = 0.0;          ///< p_DE of the pores [Eq. 12], for theory beside "pores"
+    double porosity = 0.0;  ///< p_DE of the pores [Eq. 12], for theory beside "pores"
     double seconds = 0.0;
 };
 

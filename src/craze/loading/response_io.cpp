@@ -15,7 +15,8 @@ struct CsvRow {
     bool header = false;
     std::string prefix, text;
 
-    template <class T> void operator()(const char* key, T& value)
+    template <class T>
+    void operator()(const char* key, T& value)
     {
         if constexpr (std::is_same_v<T, Vec3>) {
             const std::string outer = prefix;
@@ -48,7 +49,8 @@ std::string csv(const std::vector<T>& rows)
 std::string file_name(const std::string& loading)
 {
     std::string name;
-    for (const char c : loading) name += std::isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '-' || c == '+' ? c : '_';
+    for (const char c : loading)
+        name += std::isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '-' || c == '+' ? c : '_';
     return name;
 }
 
@@ -60,7 +62,8 @@ void save(const Response& response, const std::filesystem::path& folder)
     for (const auto& curve : response.curves) {
         io::write_text(folder / "curves" / (file_name(curve.loading.name) + ".csv"), csv(curve.points));
         if (!curve.broken.empty())
-            io::write_text(folder / "curves" / (file_name(curve.loading.name) + "_broken_bonds.csv"), csv(curve.broken));
+            io::write_text(folder / "curves" / (file_name(curve.loading.name) + "_broken_bonds.csv"),
+                           csv(curve.broken));
     }
     io::write_text(folder / "response.json", as_json(response).dump(1) + "\n");
 }
@@ -72,7 +75,8 @@ Response load_response(const std::filesystem::path& folder)
     try {
         read_json(Json::parse(io::read_text(file)), response);
     } catch (const Json::exception& error) {
-        throw InvalidInput(fmt::format("{}: not the results of loadings: {}; run `craze loading` again", file.string(), error.what()));
+        throw InvalidInput(
+            fmt::format("{}: not the results of loadings: {}; run `craze loading` again", file.string(), error.what()));
     }
     return response;
 }

@@ -17,7 +17,8 @@ Vec3 expected_strain(const Loading& loading, double s, double nu)
     Vec3 strain;
     double driven = 0.0;
     for (int a = 0; a < 3; ++a)
-        if (const auto& drive = loading.drive[static_cast<std::size_t>(a)]; !drive.free) driven += strain[a] = drive.factor * s;
+        if (const auto& drive = loading.drive[static_cast<std::size_t>(a)]; !drive.free)
+            driven += strain[a] = drive.factor * s;
     for (int a = 0; a < 3; ++a)
         if (loading.drive[static_cast<std::size_t>(a)].free) strain[a] = -nu * driven;
     return strain;
@@ -55,7 +56,8 @@ mechanics::Constraints Rig::constraints(const Loading& loading, double s) const
     return imposed;
 }
 
-Point Rig::measure(const Loading& loading, double s, const mechanics::State& state, const mechanics::Forces& forces) const
+Point Rig::measure(const Loading& loading, double s, const mechanics::State& state,
+                   const mechanics::Forces& forces) const
 {
     Point p;
     p.program = s;
@@ -109,7 +111,8 @@ Curve Rig::rest(const Loading& loading, const Watcher& watch)
     double peak = 0.0;
     Progress progress(loading.name, static_cast<std::int64_t>(loading.path.size()));
     for (std::size_t k = 0; k < loading.path.size(); ++k) {
-        const double s = loading.path[k], s_1 = k > 0 ? loading.path[k - 1] : 0.0, s_2 = k > 1 ? loading.path[k - 2] : 0.0;
+        const double s = loading.path[k], s_1 = k > 0 ? loading.path[k - 1] : 0.0,
+                     s_2 = k > 1 ? loading.path[k - 2] : 0.0;
         mechanics::State start = previous;
         auto& small = small_[static_cast<std::size_t>(loading.axis)];
         if (k == 0 && is_uniaxial(loading) && small) {
@@ -127,8 +130,8 @@ Curve Rig::rest(const Loading& loading, const Watcher& watch)
         try {
             equilibrium = solver_.solve(constraints(loading, s), std::move(start));
         } catch (const ComputationFailed& error) {
-            throw ComputationFailed(fmt::format("{}: no rest found at program strain {:.4g} (reached {:.4g}): {}", loading.name, s,
-                                                s_1, error.what()));
+            throw ComputationFailed(fmt::format("{}: no rest found at program strain {:.4g} (reached {:.4g}): {}",
+                                                loading.name, s, s_1, error.what()));
         }
         before = std::move(previous);
         previous = std::move(equilibrium.state);
@@ -138,14 +141,15 @@ Curve Rig::rest(const Loading& loading, const Watcher& watch)
         const Point& last = curve.points.back();
         p.work = last.work;
         for (int a = 0; a < 3; ++a)
-            p.work += 0.5 * (p.stress[a] + last.stress[a]) * (p.strain[a] - last.strain[a]) * lattice_.box.x * lattice_.box.y *
-                      lattice_.box.z;
+            p.work += 0.5 * (p.stress[a] + last.stress[a]) * (p.strain[a] - last.strain[a]) * lattice_.box.x *
+                      lattice_.box.y * lattice_.box.z;
         curve.points.push_back(p);
         if (k == 0 && is_uniaxial(loading) && !small) {
             small = previous;
             for (auto& u : small->u) u /= s;
         }
-        if (watch) watch({loading, curve.points.back(), static_cast<std::int64_t>(k) + 1, previous, equilibrium.forces});
+        if (watch)
+            watch({loading, curve.points.back(), static_cast<std::int64_t>(k) + 1, previous, equilibrium.forces});
         progress.advance();
         const double stress = std::abs(p.stress[loading.axis]);
         peak = std::max(peak, stress);
@@ -173,7 +177,8 @@ void fill_bulk_modulus(std::vector<Point>& points)
     for (std::size_t k = 0; k < n; ++k) {
         const double x = points[k].eta;
         double d = 0.0;
-        if (n == 2) d = (points[1].pressure - points[0].pressure) / (points[1].eta - points[0].eta);
+        if (n == 2)
+            d = (points[1].pressure - points[0].pressure) / (points[1].eta - points[0].eta);
         else {
             const std::size_t a = k == 0 ? 0 : std::min(k - 1, n - 3);
             d = slope(a, a + 1, a + 2, x);

@@ -44,7 +44,8 @@ public:
     /// Sides of the driven axes at program strain s: the least one held, the other at s factor times the edge.
     mechanics::Constraints constraints(const Loading& loading, double s) const;
     /// Everything that can be said of one state; work, K and what motion adds are left to the caller.
-    Point measure(const Loading& loading, double s, const mechanics::State& state, const mechanics::Forces& forces) const;
+    Point measure(const Loading& loading, double s, const mechanics::State& state,
+                  const mechanics::Forces& forces) const;
 
     /// States of rest along the path of a loading.
     /// @throws ComputationFailed  with the strain reached and what to try
@@ -60,7 +61,8 @@ private:
     Faces faces_;
     StrainGauge gauge_;
     mechanics::EquilibriumSolver solver_;
-    std::array<std::optional<mechanics::State>, 3> small_;  ///< per unit of uniaxial strain: where the next loading starts
+    std::array<std::optional<mechanics::State>, 3>
+        small_;  ///< per unit of uniaxial strain: where the next loading starts
 };
 
 }  // namespace craze::loading

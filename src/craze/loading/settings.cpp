@@ -31,15 +31,17 @@ void check_axes(const std::string& axes, std::string_view key)
     const bool fine = !axes.empty() && axes.find_first_not_of("xyz") == std::string::npos &&
                       std::set<char>(axes.begin(), axes.end()).size() == axes.size();
     if (!fine)
-        throw InvalidInput(fmt::format("loading.{}: needed some of the letters x, y, z, each once, got \"{}\"", key, axes));
+        throw InvalidInput(
+            fmt::format("loading.{}: needed some of the letters x, y, z, each once, got \"{}\"", key, axes));
 }
 
 std::array<Drive, 3> drives_of(const Program& program)
 {
     const auto wrong = [&](const std::string& why) {
-        return InvalidInput(fmt::format("loading.programs \"{}\": axes: {}; needed three of \"free\" or a factor of the "
-                                        "program's strain, such as [\"free\", \"free\", \"1\"]",
-                                        program.name, why));
+        return InvalidInput(
+            fmt::format("loading.programs \"{}\": axes: {}; needed three of \"free\" or a factor of the "
+                        "program's strain, such as [\"free\", \"free\", \"1\"]",
+                        program.name, why));
     };
     if (program.axes.size() != 3) throw wrong(fmt::format("got {} entries", program.axes.size()));
     std::array<Drive, 3> drives;
@@ -65,16 +67,21 @@ std::array<Drive, 3> drives_of(const Program& program)
 void describe(Schema& schema, Program& p)
 {
     schema.text("name", p.name, "name of the loading in results");
-    schema.text("specimen", p.specimen, "dense, pores, cracks or both, with T1, closed or a thickness after the last two");
+    schema.text("specimen", p.specimen,
+                "dense, pores, cracks or both, with T1, closed or a thickness after the last two");
     schema.texts("axes", p.axes, "x, y, z: free, or the factor of the program's strain (0: held)");
-    schema.quantities("turns", p.turns, Dimension::fraction, {-0.2, 0.2}, "strain goes from 0 to each of these in turn");
+    schema.quantities("turns", p.turns, Dimension::fraction, {-0.2, 0.2},
+                      "strain goes from 0 to each of these in turn");
     schema.integer("points", p.points, {1, 100000}, "points on each straight part");
     schema.flag("motion", p.motion, "solve Newton's law (cracking) instead of equilibrium");
-    schema.quantity("strength", p.strength, Dimension::pressure, {0.0, 1e15}, "bond strength sigma_failure; 0: never breaks");
+    schema.quantity("strength", p.strength, Dimension::pressure, {0.0, 1e15},
+                    "bond strength sigma_failure; 0: never breaks");
     schema.number("crossings", p.crossings, {0.1, 1e6}, "motion: wave crossings of the axial edge in the whole path");
     schema.number("damping", p.damping, {0.0, 1e4}, "motion: damping, times the reference");
-    schema.quantity("stop_drop", p.stop_drop, Dimension::fraction, open_share, "stop after this fall of stress from its peak; 1: never");
-    schema.quantity("stop_damage", p.stop_damage, Dimension::fraction, open_share, "stop when this share of bonds is broken; 1: never");
+    schema.quantity("stop_drop", p.stop_drop, Dimension::fraction, open_share,
+                    "stop after this fall of stress from its peak; 1: never");
+    schema.quantity("stop_damage", p.stop_damage, Dimension::fraction, open_share,
+                    "stop when this share of bonds is broken; 1: never");
 }
 
 void describe(Schema& schema, Settings& s)
@@ -89,26 +96,34 @@ void describe(Schema& schema, Settings& s)
         schema.flag("calibrate", s.beam.calibrate, "find E_B and r~ that give E_D and nu_D; off: use the values below");
         schema.quantity("young_modulus", s.beam.given.E_B, Dimension::pressure, {1e3, 1e16}, "E_B");
         schema.number("poisson_ratio", s.beam.given.nu_B, {0.0, 0.5}, "nu_B");
-        schema.number("radius_ratio", s.beam.given.r_tilde, {0.05, 1.0}, "r~, beam radius over mean element radius [Eq. 3]");
-        schema.quantity("tolerance", s.beam.tolerance, Dimension::fraction, {1e-5, 0.05}, "calibrated to this share of E_D and nu_D");
+        schema.number("radius_ratio", s.beam.given.r_tilde, {0.05, 1.0},
+                      "r~, beam radius over mean element radius [Eq. 3]");
+        schema.quantity("tolerance", s.beam.tolerance, Dimension::fraction, {1e-5, 0.05},
+                        "calibrated to this share of E_D and nu_D");
         schema.path("library", s.beam.library, "JSON file that keeps calibrations for use again; empty: none");
     });
-    schema.texts("specimens", s.specimens, "dense, pores, cracks, both; the last two also T1, closed or a thickness: cracks 40 nm");
-    schema.number("face_reach", s.face_reach, {0.1, 10.0}, "sides: elements whose centre lies within this many of their radii of the wall");
-    schema.number("interior_margin", s.interior_margin, {0.0, 1e3}, "interior strain: elements this many mean radii away from every wall");
+    schema.texts("specimens", s.specimens,
+                 "dense, pores, cracks, both; the last two also T1, closed or a thickness: cracks 40 nm");
+    schema.number("face_reach", s.face_reach, {0.1, 10.0},
+                  "sides: elements whose centre lies within this many of their radii of the wall");
+    schema.number("interior_margin", s.interior_margin, {0.0, 1e3},
+                  "interior strain: elements this many mean radii away from every wall");
     schema.number("residual", s.residual, {1e-12, 1e-2}, "residual of equilibrium over the driving forces");
     schema.group("moduli", "Young's moduli and Poisson's ratios at small strain [Table 3]", [&] {
         schema.flag("run", s.moduli.run, "measure them");
         schema.texts("specimens", s.moduli.specimens, "empty: all of loading.specimens");
         schema.text("axes", s.moduli.axes, axes_meaning);
-        schema.quantity("strain", s.moduli.strain, Dimension::fraction, {1e-7, 0.01}, "strain, tension and compression");
+        schema.quantity("strain", s.moduli.strain, Dimension::fraction, {1e-7, 0.01},
+                        "strain, tension and compression");
     });
     schema.group("uniaxial", "stress-strain curves [Figs. 17, 18]", [&] {
         schema.flag("run", s.uniaxial.run, "run them");
         schema.texts("specimens", s.uniaxial.specimens, "empty: all of loading.specimens");
         schema.text("axes", s.uniaxial.axes, axes_meaning);
-        schema.quantity("tension", s.uniaxial.tension, Dimension::fraction, strain_range, "largest tensile strain; 0: no tension");
-        schema.quantity("compression", s.uniaxial.compression, Dimension::fraction, strain_range, "largest compressive strain; 0: no compression");
+        schema.quantity("tension", s.uniaxial.tension, Dimension::fraction, strain_range,
+                        "largest tensile strain; 0: no tension");
+        schema.quantity("compression", s.uniaxial.compression, Dimension::fraction, strain_range,
+                        "largest compressive strain; 0: no compression");
         schema.integer("points", s.uniaxial.points, {1, 10000}, "points on each curve");
     });
     schema.group("triaxial", "pressure, density, bulk modulus and crack closure [Figs. 20-22]", [&] {
@@ -122,28 +137,38 @@ void describe(Schema& schema, Settings& s)
         schema.flag("run", s.fracture.run, "run them");
         schema.texts("specimens", s.fracture.specimens, "empty: all of loading.specimens");
         schema.text("axes", s.fracture.axes, axes_meaning);
-        schema.quantities("strengths", s.fracture.strengths, Dimension::pressure, {1.0, 1e15}, "bond strengths sigma_failure [Table 4]");
-        schema.quantity("tension", s.fracture.tension, Dimension::fraction, strain_range, "largest tensile strain; 0: no tension");
-        schema.quantity("compression", s.fracture.compression, Dimension::fraction, strain_range, "largest compressive strain; 0: no compression");
-        schema.number("crossings", s.fracture.crossings, {0.1, 1e6}, "wave crossings of the specimen in the whole path: more is slower");
+        schema.quantities("strengths", s.fracture.strengths, Dimension::pressure, {1.0, 1e15},
+                          "bond strengths sigma_failure [Table 4]");
+        schema.quantity("tension", s.fracture.tension, Dimension::fraction, strain_range,
+                        "largest tensile strain; 0: no tension");
+        schema.quantity("compression", s.fracture.compression, Dimension::fraction, strain_range,
+                        "largest compressive strain; 0: no compression");
+        schema.number("crossings", s.fracture.crossings, {0.1, 1e6},
+                      "wave crossings of the specimen in the whole path: more is slower");
         schema.number("damping", s.fracture.damping, {0.0, 1e4}, "damping, times the reference");
-        schema.quantity("stop_drop", s.fracture.stop_drop, Dimension::fraction, open_share, "stop after this fall of stress from its peak; 1: never");
+        schema.quantity("stop_drop", s.fracture.stop_drop, Dimension::fraction, open_share,
+                        "stop after this fall of stress from its peak; 1: never");
         schema.integer("points", s.fracture.points, {2, 100000}, "points on each curve");
-        schema.flag("check_rate", s.fracture.check_rate, "run again at half the rate and report how far the strength moves");
-        schema.quantities("cycles", s.fracture.cycles, Dimension::fraction, {-0.2, 0.2}, "peaks of strain, each followed by unloading [Fig. 25]; empty: no cycles");
+        schema.flag("check_rate", s.fracture.check_rate,
+                    "run again at half the rate and report how far the strength moves");
+        schema.quantities("cycles", s.fracture.cycles, Dimension::fraction, {-0.2, 0.2},
+                          "peaks of strain, each followed by unloading [Fig. 25]; empty: no cycles");
     });
     schema.items("programs", s.programs, "loadings of your own making");
     schema.group("output", "states for ParaView and restart files", [&] {
-        schema.quantities("states", s.output.states, Dimension::fraction, {-0.2, 0.2}, "program strains at which states are kept");
+        schema.quantities("states", s.output.states, Dimension::fraction, {-0.2, 0.2},
+                          "program strains at which states are kept");
         schema.flag("last_state", s.output.last_state, "keep the last state of each curve");
-        schema.quantity("checkpoint", s.output.checkpoint, Dimension::time, {0.0, 1e6}, "between restart files; 0: none");
+        schema.quantity("checkpoint", s.output.checkpoint, Dimension::time, {0.0, 1e6},
+                        "between restart files; 0: none");
     });
 }
 
 mechanics::DenseMaterial dense_material(const Settings& s)
 {
     const bool given = s.dense.E_D && s.dense.nu_D && s.dense.rho_D;
-    mechanics::DenseMaterial dense = given ? mechanics::DenseMaterial{} : find_material(s.dense.material, s.beam.library);
+    mechanics::DenseMaterial dense =
+        given ? mechanics::DenseMaterial{} : find_material(s.dense.material, s.beam.library);
     return {s.dense.E_D.value_or(dense.E_D), s.dense.nu_D.value_or(dense.nu_D), s.dense.rho_D.value_or(dense.rho_D)};
 }
 
@@ -161,19 +186,22 @@ void check(const Settings& s)
     check_axes(s.uniaxial.axes, "uniaxial.axes");
     check_axes(s.fracture.axes, "fracture.axes");
     if (s.fracture.run && s.fracture.strengths.empty())
-        throw InvalidInput("loading.fracture.strengths: needed at least one bond strength, such as [\"10 GPa\"], got an empty list");
+        throw InvalidInput(
+            "loading.fracture.strengths: needed at least one bond strength, such as [\"10 GPa\"], got an empty list");
     std::set<std::string> names;
     for (const auto& program : s.programs) {
         check_specimens({program.specimen}, fmt::format("programs \"{}\"", program.name));
         drives_of(program);
         if (program.turns.empty())
-            throw InvalidInput(fmt::format("loading.programs \"{}\": turns: needed at least one strain, got none", program.name));
+            throw InvalidInput(
+                fmt::format("loading.programs \"{}\": turns: needed at least one strain, got none", program.name));
         if (program.name.empty() || !names.insert(program.name).second)
-            throw InvalidInput(fmt::format("loading.programs: each needs a name of its own, got \"{}\" {}", program.name,
-                                           program.name.empty() ? "" : "twice"));
+            throw InvalidInput(fmt::format("loading.programs: each needs a name of its own, got \"{}\" {}",
+                                           program.name, program.name.empty() ? "" : "twice"));
         if (program.strength > 0.0 && !program.motion)
-            throw InvalidInput(fmt::format("loading.programs \"{}\": bonds break in motion only; set motion = true or strength = 0",
-                                           program.name));
+            throw InvalidInput(
+                fmt::format("loading.programs \"{}\": bonds break in motion only; set motion = true or strength = 0",
+                            program.name));
     }
 }
 
@@ -185,7 +213,8 @@ const Names& or_all(const Names& some, const Settings& s) { return some.empty() 
 std::vector<double> even(double end, std::int64_t points)
 {
     std::vector<double> path;
-    for (std::int64_t k = 1; k <= points; ++k) path.push_back(end * static_cast<double>(k) / static_cast<double>(points));
+    for (std::int64_t k = 1; k <= points; ++k)
+        path.push_back(end * static_cast<double>(k) / static_cast<double>(points));
     return path;
 }
 
@@ -209,8 +238,11 @@ Loading uniaxial_test(Loading::Kind kind, const std::string& specimen, int axis,
     loading.axis = axis;
     loading.drive[static_cast<std::size_t>(axis)] = {false, 1.0};
     loading.path = even(end, points);
-    const char* verb = kind == Loading::Kind::modulus ? "modulus" : kind == Loading::Kind::fracture ? "fracture" : "uniaxial";
-    loading.name = fmt::format("{} {} {} {}", specimen_name(loading.specimen), verb, "xyz"[axis], end > 0.0 ? "tension" : "compression");
+    const char* verb = kind == Loading::Kind::modulus    ? "modulus"
+                       : kind == Loading::Kind::fracture ? "fracture"
+                                                         : "uniaxial";
+    loading.name = fmt::format("{} {} {} {}", specimen_name(loading.specimen), verb, "xyz"[axis],
+                               end > 0.0 ? "tension" : "compression");
     return loading;
 }
 
@@ -224,13 +256,15 @@ std::vector<Loading> plan(const Settings& s, const Vec3& box)
         for (const auto& specimen : or_all(s.moduli.specimens, s))
             for (const char axis : s.moduli.axes)
                 for (const double sign : {1.0, -1.0})
-                    loadings.push_back(uniaxial_test(Loading::Kind::modulus, specimen, axis_of(axis), sign * s.moduli.strain, 1));
+                    loadings.push_back(
+                        uniaxial_test(Loading::Kind::modulus, specimen, axis_of(axis), sign * s.moduli.strain, 1));
     if (s.uniaxial.run)
         for (const auto& specimen : or_all(s.uniaxial.specimens, s))
             for (const char axis : s.uniaxial.axes)
                 for (const double end : {s.uniaxial.tension, -s.uniaxial.compression})
                     if (end != 0.0)
-                        loadings.push_back(uniaxial_test(Loading::Kind::uniaxial, specimen, axis_of(axis), end, s.uniaxial.points));
+                        loadings.push_back(
+                            uniaxial_test(Loading::Kind::uniaxial, specimen, axis_of(axis), end, s.uniaxial.points));
     if (s.triaxial.run)
         for (const auto& specimen : or_all(s.triaxial.specimens, s)) {
             Loading loading;
@@ -241,7 +275,8 @@ std::vector<Loading> plan(const Settings& s, const Vec3& box)
             for (int a = 0; a < 3; ++a)
                 loading.drive[static_cast<std::size_t>(a)] = {
                     false, s.triaxial.sides == Settings::Triaxial::Sides::strain ? 1.0 : mean / box[a]};
-            for (const double eta : even(s.triaxial.eta, s.triaxial.points)) loading.path.push_back(strain_at_density(loading.drive, eta));
+            for (const double eta : even(s.triaxial.eta, s.triaxial.points))
+                loading.path.push_back(strain_at_density(loading.drive, eta));
             loadings.push_back(std::move(loading));
         }
     if (s.fracture.run)
@@ -253,12 +288,14 @@ std::vector<Loading> plan(const Settings& s, const Vec3& box)
                         loading.strength = strength;
                         loading.crossings = s.fracture.crossings;
                         loading.damping = s.fracture.damping;
-                        loading.name = fmt::format("{} {}", loading.name, format_quantity(strength, Dimension::pressure));
+                        loading.name =
+                            fmt::format("{} {}", loading.name, format_quantity(strength, Dimension::pressure));
                         return loading;
                     };
                     for (const double end : {s.fracture.tension, -s.fracture.compression}) {
                         if (end == 0.0) continue;
-                        auto loading = in_motion(uniaxial_test(Loading::Kind::fracture, specimen, axis_of(axis), end, s.fracture.points));
+                        auto loading = in_motion(
+                            uniaxial_test(Loading::Kind::fracture, specimen, axis_of(axis), end, s.fracture.points));
                         loading.stop_drop = s.fracture.stop_drop;
                         loadings.push_back(loading);
                         if (!s.fracture.check_rate) continue;
@@ -267,7 +304,8 @@ std::vector<Loading> plan(const Settings& s, const Vec3& box)
                         loadings.push_back(std::move(loading));
                     }
                     if (s.fracture.cycles.empty()) continue;
-                    Loading loading = uniaxial_test(Loading::Kind::cycles, specimen, axis_of(axis), s.fracture.cycles.front(), 1);
+                    Loading loading =
+                        uniaxial_test(Loading::Kind::cycles, specimen, axis_of(axis), s.fracture.cycles.front(), 1);
                     std::vector<double> turns;
                     for (const double peak : s.fracture.cycles) turns.insert(turns.end(), {peak, 0.0});
                     const auto legs = static_cast<std::int64_t>(turns.size());
@@ -282,7 +320,9 @@ std::vector<Loading> plan(const Settings& s, const Vec3& box)
         loading.specimen = parse_specimen(program.specimen);
         loading.drive = drives_of(program);
         for (int a = 2; a >= 0; --a)
-            if (!loading.drive[static_cast<std::size_t>(a)].free && loading.drive[static_cast<std::size_t>(a)].factor != 0.0) loading.axis = a;
+            if (!loading.drive[static_cast<std::size_t>(a)].free &&
+                loading.drive[static_cast<std::size_t>(a)].factor != 0.0)
+                loading.axis = a;
         loading.path = through(program.turns, program.points);
         loading.solver = program.motion ? Solver::motion : Solver::equilibrium;
         if (program.strength > 0.0) loading.strength = program.strength;

@@ -14,9 +14,10 @@ using Thickness = domain::Defects::Thickness;
 domain::Defects parse_specimen(std::string_view name)
 {
     const auto wrong = [&](std::string_view why) {
-        return InvalidInput(fmt::format("specimen \"{}\": {}; write dense, pores, cracks or both, and after the last two, "
-                                        "if you wish, T2, T1, closed or a thickness such as 40 nm",
-                                        name, why));
+        return InvalidInput(
+            fmt::format("specimen \"{}\": {}; write dense, pores, cracks or both, and after the last two, "
+                        "if you wish, T2, T1, closed or a thickness such as 40 nm",
+                        name, why));
     };
     const auto space = name.find(' ');
     const std::string kind(name.substr(0, space));
@@ -25,18 +26,24 @@ domain::Defects parse_specimen(std::string_view name)
 
     domain::Defects defects;
     const std::array<std::string, 4> kinds{"dense", "pores", "cracks", "both"};
-    if (kind == "dense") defects.pores = defects.cracks = false;
-    else if (kind == "pores") defects.cracks = false;
-    else if (kind == "cracks") defects.pores = false;
+    if (kind == "dense")
+        defects.pores = defects.cracks = false;
+    else if (kind == "pores")
+        defects.cracks = false;
+    else if (kind == "cracks")
+        defects.pores = false;
     else if (kind != "both") {
         const std::string near = nearest_name(kind, kinds.data(), kinds.data() + kinds.size());
         throw wrong(near.empty() ? "no such specimen" : fmt::format("did you mean \"{}\"?", near));
     }
     if (rule.empty()) return defects;
     if (!defects.cracks) throw wrong("it has no cracks to give a thickness to");
-    if (rule == "T2") defects.thickness = Thickness::T2;
-    else if (rule == "T1") defects.thickness = Thickness::T1;
-    else if (rule == "closed") defects.thickness = Thickness::closed;
+    if (rule == "T2")
+        defects.thickness = Thickness::T2;
+    else if (rule == "T1")
+        defects.thickness = Thickness::T1;
+    else if (rule == "closed")
+        defects.thickness = Thickness::closed;
     else {
         defects.thickness = Thickness::constant;
         try {
@@ -57,7 +64,8 @@ std::string specimen_name(const domain::Defects& defects)
         case Thickness::T2: return kind;
         case Thickness::T1: return fmt::format("{} T1", kind);
         case Thickness::closed: return fmt::format("{} closed", kind);
-        case Thickness::constant: return fmt::format("{} {}", kind, format_quantity(defects.constant, Dimension::length));
+        case Thickness::constant:
+            return fmt::format("{} {}", kind, format_quantity(defects.constant, Dimension::length));
     }
     return kind;
 }

@@ -60,21 +60,25 @@ Json summary(const Response& response)
         if (curve.loading.kind != Loading::Kind::triaxial || curve.points.size() < 2) continue;
         const Point &first = curve.points.front(), &last = curve.points.back();
         triaxial[specimen_name(curve.loading.specimen)] = {{"K_first_Pa", first.bulk},
-                                                        {"K_last_Pa", last.bulk},
-                                                        {"K_first_over_dense", first.bulk / dense.bulk()},
-                                                        {"eta_last", last.eta},
-                                                        {"pressure_last_Pa", last.pressure},
-                                                        {"closure_first", first.closure},
-                                                        {"closure_last", last.closure}};
+                                                           {"K_last_Pa", last.bulk},
+                                                           {"K_first_over_dense", first.bulk / dense.bulk()},
+                                                           {"eta_last", last.eta},
+                                                           {"pressure_last_Pa", last.pressure},
+                                                           {"closure_first", first.closure},
+                                                           {"closure_last", last.closure}};
     }
     s["triaxial"] = std::move(triaxial);
 
     Json strengths = Json::array();
     for (const auto& u : response.strengths) {
-        Json row{{"loading", u.loading},         {"specimen", u.specimen},
-                 {"axis", std::string(1, "xyz"[u.axis])}, {"load", u.tension ? "tension" : "compression"},
-                 {"sigma_failure_Pa", u.sigma_failure},   {"strength_Pa", u.strength},
-                 {"strain", u.strain},     {"new_contact_beams", u.new_cracks}};
+        Json row{{"loading", u.loading},
+                 {"specimen", u.specimen},
+                 {"axis", std::string(1, "xyz"[u.axis])},
+                 {"load", u.tension ? "tension" : "compression"},
+                 {"sigma_failure_Pa", u.sigma_failure},
+                 {"strength_Pa", u.strength},
+                 {"strain", u.strain},
+                 {"new_contact_beams", u.new_cracks}};
         if (u.change >= 0.0) row["change_at_half_rate"] = u.change;
         strengths.push_back(std::move(row));
     }
@@ -96,7 +100,8 @@ Json summary(const Response& response)
     s["curves"] = std::move(curves);
     s["notes"] = Json::array(
         {response.calibration.done
-             ? fmt::format("Fitted: E_B and r~, so that the dense packing has E_D and nu_D to {:.2g} %.", 100.0 * response.calibration.error)
+             ? fmt::format("Fitted: E_B and r~, so that the dense packing has E_D and nu_D to {:.2g} %.",
+                           100.0 * response.calibration.error)
              : std::string("Given, not fitted: E_B, nu_B and r~."),
          "Predicted: everything else. E is stress over box strain [Eqs. 16, 17]; nu is from interior strains.",
          "K = (1 + eta) dP/deta: the second form printed in Eq. 22 lacks the 1."});

@@ -6,7 +6,10 @@
 
 namespace craze::loading {
 
-Elastic elastic_from(double K, double G) { return {9.0 * K * G / (3.0 * K + G), (3.0 * K - 2.0 * G) / (6.0 * K + 2.0 * G)}; }
+Elastic elastic_from(double K, double G)
+{
+    return {9.0 * K * G / (3.0 * K + G), (3.0 * K - 2.0 * G) / (6.0 * K + 2.0 * G)};
+}
 
 double porous_modulus(const Elastic& dense, double p)
 {

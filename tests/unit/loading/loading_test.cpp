@@ -78,7 +78,8 @@ TEST(Rig, WorkOfTheSidesIsStoredInTheBeams)
     loading.path = {5e-4, 1e-3, 0.0, -1e-3};
     const Curve curve = rig.rest(loading);
     for (std::size_t k = 1; k < curve.points.size(); ++k)
-        EXPECT_NEAR(curve.points[k].work, curve.points[k].elastic, 2e-3 * curve.points[1].elastic + 1e-3 * curve.points[k].elastic);
+        EXPECT_NEAR(curve.points[k].work, curve.points[k].elastic,
+                    2e-3 * curve.points[1].elastic + 1e-3 * curve.points[k].elastic);
 }
 
 TEST(Triaxial, BulkModulusOfALinearAndOfAParabolicCurve)
@@ -90,7 +91,8 @@ TEST(Triaxial, BulkModulusOfALinearAndOfAParabolicCurve)
         points[k].pressure = 50e9 * eta + 400e9 * eta * eta;
     }
     fill_bulk_modulus(points);
-    for (const auto& p : points) EXPECT_NEAR(p.bulk, (1.0 + p.eta) * (50e9 + 800e9 * p.eta), 1e-9 * p.bulk);  // [Eq. 22]
+    for (const auto& p : points)
+        EXPECT_NEAR(p.bulk, (1.0 + p.eta) * (50e9 + 800e9 * p.eta), 1e-9 * p.bulk);  // [Eq. 22]
 }
 
 TEST(Calibration, MeetsItsTargetAndScalesWithIt)

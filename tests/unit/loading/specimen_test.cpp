@@ -11,7 +11,8 @@ using Thickness = domain::Defects::Thickness;
 
 TEST(Specimen, IsNamedByItsDefects)
 {
-    for (const char* name : {"dense", "pores", "cracks", "both", "cracks T1", "both closed", "cracks 40 nm", "both 0 nm"})
+    for (const char* name :
+         {"dense", "pores", "cracks", "both", "cracks T1", "both closed", "cracks 40 nm", "both 0 nm"})
         EXPECT_EQ(specimen_name(parse_specimen(name)), name);
     EXPECT_EQ(specimen_name(parse_specimen("both T2")), "both");
     const auto forty = parse_specimen("cracks 40nm");

@@ -21,7 +21,8 @@ TEST(Theory, HashinShtrikmanBoundOfThePapersPores)
 
 TEST(Theory, OfVoidsAndCracksStartsFromTheDenseSolid)
 {
-    for (const Elastic& none : {hashin_shtrikman(ysz, 0.0), non_interacting_pennies(ysz, 0.0), self_consistent_pennies(ysz, 0.0)}) {
+    for (const Elastic& none :
+         {hashin_shtrikman(ysz, 0.0), non_interacting_pennies(ysz, 0.0), self_consistent_pennies(ysz, 0.0)}) {
         EXPECT_NEAR(none.E, ysz.E, 1e-6 * ysz.E);
         EXPECT_NEAR(none.nu, ysz.nu, 1e-9);
     }
@@ -36,7 +37,8 @@ TEST(Theory, PenniesOfDensityATenth)
 
 TEST(Theory, SelfConsistentBulkModulusAgreesWithItsOwnFormula)
 {
-    // K/K_0 = 1 - 16/9 (1 - nu^2)/(1 - 2 nu) e with the effective nu: Budiansky and O'Connell, Int. J. Solids Struct. 12 (1976) 81.
+    // K/K_0 = 1 - 16/9 (1 - nu^2)/(1 - 2 nu) e with the effective nu: Budiansky and O'Connell, Int. J. Solids Struct.
+    // 12 (1976) 81.
     for (const double e : {0.05, 0.2, 0.4}) {
         const Elastic cracked = self_consistent_pennies(ysz, e);
         const double nu = cracked.nu;
