@@ -84,23 +84,25 @@ void Page::figure(const Rose& rose)
     caption_and_links(rose.id, rose.caption, rose.paper, link(rose.id + ".csv", "text/csv", table));
 }
 
-void Page::picture(std::string_view id, std::span<const std::byte> png, std::string_view caption,
-                   std::string_view paper)
+std::string Page::image(std::string_view id, std::string_view png, std::string_view caption)
 {
-    io::write_text(folder_ / "figures" / fmt::format("{}.png", id),
-                   std::string_view(reinterpret_cast<const char*>(png.data()), png.size()));
-    body_ += fmt::format("<figure class=\"picture\" id=\"{}\"><img alt=\"{}\" src=\"{}\">", escape(id), escape(caption),
-                         data_uri("image/png", png));
+    io::write_text(folder_ / "figures" / fmt::format("{}.png", id), png);
+    return fmt::format("<img alt=\"{}\" src=\"{}\">", escape(caption), data_uri("image/png", png));
+}
+
+void Page::picture(std::string_view id, std::string_view png, std::string_view caption, std::string_view paper)
+{
+    body_ += fmt::format("<figure class=\"picture\" id=\"{}\">{}", escape(id), image(id, png, caption));
     caption_and_links(id, caption, paper, "");
 }
 
 void Page::viewer(std::string_view id, std::string_view kind, const Json& data, std::string_view caption,
-                  std::string_view fallback, std::string_view paper)
+                  std::string_view still, std::string_view paper)
 {
     body_ += fmt::format(
         "<figure class=\"viewer {}\" id=\"{}\"><div class=\"drawing\">{}</div>"
         "<script type=\"application/json\">{}</script>",
-        escape(kind), escape(id), fallback, script_json(data));
+        escape(kind), escape(id), image(id, still, caption), script_json(data));
     caption_and_links(id, caption, paper, "");
 }
 

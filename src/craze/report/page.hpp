@@ -6,9 +6,7 @@
 #include "craze/report/figure.hpp"
 #include "craze/report/html.hpp"
 
-#include <cstddef>
 #include <filesystem>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,17 +34,17 @@ public:
     void figure(const Figure& figure);
     void figure(const Rose& rose);
     /// A PNG, also written to figures/<id>.png.
-    void picture(std::string_view id, std::span<const std::byte> png, std::string_view caption,
-                 std::string_view paper = "");
-    /// Data that the page's script turns into a viewer of the given kind ("slices", "scene"); `fallback` is HTML shown
-    /// until then, in print, and where it cannot.
+    void picture(std::string_view id, std::string_view png, std::string_view caption, std::string_view paper = "");
+    /// Data that the page's script turns into a viewer of the given kind ("slices", "scene"). `still` is a PNG shown
+    /// until then, in print, and where it cannot; it is also written to figures/<id>.png.
     void viewer(std::string_view id, std::string_view kind, const Json& data, std::string_view caption,
-                std::string_view fallback, std::string_view paper = "");
+                std::string_view still, std::string_view paper = "");
 
     /// The whole document.
     std::string finish() const;
 
 private:
+    std::string image(std::string_view id, std::string_view png, std::string_view caption);
     void caption_and_links(std::string_view id, std::string_view caption, std::string_view paper,
                            std::string_view links);
 

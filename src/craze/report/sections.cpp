@@ -37,8 +37,7 @@ void plain_pictures(Work& work, std::string_view room)
     std::sort(files.begin(), files.end());
     for (const auto& file : files) {
         const auto bytes = io::read_text(file);
-        work.page.picture(fmt::format("{}_{}", room, file.stem().string()), std::as_bytes(std::span(bytes)),
-                          file.stem().string());
+        work.page.picture(fmt::format("{}_{}", room, file.stem().string()), bytes, file.stem().string());
     }
 }
 
