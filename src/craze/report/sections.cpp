@@ -1,20 +1,13 @@
 #include "craze/report/sections.hpp"
 
-#include "craze/core/progress.hpp"
-#include "craze/io/atomic_file.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace craze::report {
 
-namespace fs = std::filesystem;
-
-namespace {
-
-/// The frame that every room's section has; true if the room left something.
-bool begin(Work& work, std::string_view room, std::string_view title)
+bool begin_room(Work& work, std::string_view room, std::string_view title)
 {
     work.page.section(room, title);
     if (work.folder.has(room)) return true;
@@ -23,50 +16,46 @@ bool begin(Work& work, std::string_view room, std::string_view title)
     return false;
 }
 
-void all_numbers(Work& work, std::string_view room)
+void end_room(Work& work, std::string_view room)
 {
-    work.page.folded("All numbers of this step", summary_table(work.folder.summary(room)));
+    const Json& summary = work.folder.summary(room);
+    for (const Json& text : find(summary, "notices"))
+        if (text.is_string()) work.page.remark(text.get<std::string>());
+    work.page.folded("All numbers of this step", summary_table(summary));
 }
 
-void plain_pictures(Work& work, std::string_view room)
+Series histogram(std::string name, std::span<const double> values, std::span<const double> weights, double unit,
+                 int bins, double most)
 {
-    std::vector<fs::path> files;
-    if (!fs::is_directory(work.folder.room(room))) return;
-    for (const auto& entry : fs::directory_iterator(work.folder.room(room)))
-        if (entry.path().extension() == ".png") files.push_back(entry.path());
-    std::sort(files.begin(), files.end());
-    for (const auto& file : files) {
-        const auto bytes = io::read_text(file);
-        work.page.picture(fmt::format("{}_{}", room, file.stem().string()), bytes, file.stem().string());
+    double largest = most / unit;
+    if (!(most > 0.0))
+        for (const double v : values)
+            if (std::isfinite(v)) largest = std::max(largest, v / unit);
+    Series series{std::move(name), {}, {}, Mark::bars};
+    if (!(largest > 0.0)) return series;
+    const double raw = largest / bins, base = std::pow(10.0, std::floor(std::log10(raw)));
+    const double width = base * (raw <= base ? 1.0 : raw <= 2.0 * base ? 2.0 : raw <= 5.0 * base ? 5.0 : 10.0);
+    const auto count = static_cast<std::size_t>(std::floor(largest / width * (1.0 + 1e-12))) + 1;
+    for (std::size_t k = 0; k <= count; ++k) series.x.push_back(static_cast<double>(k) * width);
+    series.y.assign(count, 0.0);
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        const double v = values[k] / unit;
+        if (!(v >= 0.0) || !(v < series.x.back())) continue;
+        series.y[static_cast<std::size_t>(v / width)] += weights.empty() ? 1.0 : weights[k];
     }
+    return series;
 }
 
-void plain(Work& work, std::string_view room, std::string_view title)
+std::vector<double> over(std::span<const double> values, double unit)
 {
-    if (!begin(work, room, title)) return;
-    plain_pictures(work, room);
-    all_numbers(work, room);
+    std::vector<double> out(values.begin(), values.end());
+    for (double& v : out) v /= unit;
+    return out;
 }
 
-}  // namespace
-
-void write_synth(Work& work)
+std::string cell(double value, double unit, int digits)
 {
-    if (work.folder.has("synth")) plain(work, "synth", "Synthetic coating");
-}
-void write_images(Work& work) { plain(work, "images", "Images"); }
-void write_microstructure(Work& work) { plain(work, "microstructure", "Pores and cracks"); }
-void write_mesh(Work& work) { plain(work, "mesh", "Crack surface"); }
-void write_domain(Work& work) { plain(work, "domain", "Discrete domain"); }
-void write_loading(Work& work) { plain(work, "loading", "Virtual tests"); }
-
-void write_record(Work& work)
-{
-    work.page.section("run", "Record of the run");
-    if (work.folder.run().is_null())
-        work.page.remark("The folder holds no run.json: settings, versions and times of this run are not known.");
-    else
-        work.page.add(summary_table(work.folder.run()));
+    return std::isfinite(value) ? format_number(value / unit, digits) : std::string("–");
 }
 
 }  // namespace craze::report

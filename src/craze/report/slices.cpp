@@ -93,7 +93,7 @@ std::optional<Layer> read_layer(const std::string& name, const fs::path& file, S
 
 fs::path raw_stack(const OutputFolder& folder)
 {
-    for (const auto key : {"settings.images.path", "settings.images.stack", "settings.images.file"})
+    for (const auto key : {"settings.images.source", "settings.images.path"})
         if (const Json& value = find(folder.run(), key); value.is_string() && !value.get<std::string>().empty())
             return value.get<std::string>();
     return folder.room("synth") / "stack.tif";

@@ -1,0 +1,111 @@
+// Images: slices, and a quality sheet per step [2.3, Fig. 3].
+
+#include "craze/core/json.hpp"
+#include "craze/io/atomic_file.hpp"
+#include "craze/report/sections.hpp"
+#include "craze/report/slices.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace craze::report {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Pictures that a room left, in the order of their names.
+void pictures(Work& work, std::string_view room, std::string_view begin, const std::string& caption,
+              const std::string& paper)
+{
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::directory_iterator(work.folder.room(room)))
+        if (entry.path().extension() == ".png" && entry.path().filename().string().starts_with(begin))
+            files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    for (const auto& file : files) {
+        auto name = file.stem().string().substr(begin.size());
+        std::replace(name.begin(), name.end(), '_', ' ');
+        work.page.picture(fmt::format("{}_{}", room, file.stem().string()), io::read_text(file),
+                          caption.empty() ? name : fmt::format("{}: {}", caption, name), paper);
+    }
+}
+
+void quality_sheet(Work& work, const Json& steps)
+{
+    if (!steps.is_array() || steps.empty()) return;
+    work.page.subtitle("Quality after each step");
+    struct Column {
+        const char* title;
+        std::initializer_list<std::string_view> keys;
+    };
+    const Column columns[] = {{"noise σ [gray]", {"noise"}},           {"stripes rms [gray]", {"stripes"}},
+                              {"shading [gray]", {"shading"}},         {"solid [gray]", {"solid"}},
+                              {"void [gray]", {"void", "void_level"}}, {"contrast / noise", {"contrast_to_noise"}}};
+    Table table{{"step"}, {}, ""};
+    for (const auto& c : columns) table.head.emplace_back(c.title);
+    for (const Json& step : steps) {
+        std::vector<std::string> row{escape(step.value("step", std::string("?")))};
+        for (const auto& c : columns) row.push_back(cell(find_number(step, c.keys), 1.0, 3));
+        table.rows.push_back(std::move(row));
+    }
+    work.page.add(html(table));
+}
+
+/// All columns of a CSV over its first.
+Figure plain_plot(const CsvColumns& csv, std::string id, std::string caption, Axis x, Axis y)
+{
+    Figure f;
+    f.id = std::move(id), f.caption = std::move(caption), f.x = std::move(x), f.y = std::move(y);
+    for (std::size_t c = 1; c < csv.names.size(); ++c) {
+        auto name = csv.names[c];
+        std::replace(name.begin(), name.end(), '_', ' ');
+        f.series.push_back({name, csv.numbers(0), csv.numbers(c)});
+    }
+    return f;
+}
+
+}  // namespace
+
+void write_synth(Work& work)
+{
+    if (!work.folder.has("synth")) return;
+    begin_room(work, "synth", "Synthetic coating");
+    work.page.text(
+        "The stack of this run is artificial: pores and cracks of known place, size and aperture, photographed with "
+        "the "
+        "faults of a microscope. The truth is written beside the stack and never read by the chain.");
+    end_room(work, "synth");
+}
+
+void write_images(Work& work)
+{
+    const bool there = begin_room(work, "images", "Images");
+    write_slices(work);
+    if (!there) return;
+    quality_sheet(work, find(work.folder.summary("images"), "quality"));
+    work.page.add("<div class=\"row\">");
+    if (const auto csv = work.folder.csv("images", "transforms.csv"); csv && csv->has("shift_x_px"))
+        work.page.figure([&] {
+            Figure f;
+            f.id = "alignment";
+            f.caption = "Correction of each slice by the alignment.";
+            f.x.title = "slice";
+            f.y.title = "correction [px]";
+            f.series = {{"x", csv->numbers(0), csv->numbers("shift_x_px")},
+                        {"y", csv->numbers(0), csv->numbers("shift_y_px")}};
+            return f;
+        }());
+    if (const auto csv = work.folder.csv("images", "spectrum.csv"))
+        work.page.figure(plain_plot(*csv, "stripe_spectrum", "Power of the stripes before and after they were removed.",
+                                    {"waves per pixel across the stripes"}, {"power [gray²]", true}));
+    if (const auto csv = work.folder.csv("images", "profile.csv"))
+        work.page.figure(plain_plot(*csv, "illumination", "Gray level of the solid along the gradient of illumination.",
+                                    {"position [px]"}, {"gray level"}));
+    work.page.add("</div>");
+    pictures(work, "images", "strip_", "Three slices after the step", work.figure("Fig. 3"));
+    end_room(work, "images");
+}
+
+}  // namespace craze::report
