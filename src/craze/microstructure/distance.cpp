@@ -14,10 +14,10 @@ namespace {
 using Eight [[gnu::vector_size(32), gnu::may_alias, gnu::aligned(4)]] = std::int32_t;
 using Halves [[gnu::vector_size(32)]] = std::int64_t;
 
-constexpr std::int64_t group = 8;    // columns side by side in a vector
-constexpr std::int64_t groups = 4;   // vectors fetched together: two cache lines of each row
-constexpr std::int64_t margin = 34;  // rows of no_distance around a column
-constexpr std::int64_t reach = 32;   // rows searched one by one before the envelope takes over
+constexpr std::int64_t group = 8;     // columns side by side in a vector
+constexpr std::int64_t groups = 4;    // vectors fetched together: two cache lines of each row
+constexpr std::int64_t margin = 104;  // rows of no_distance around a column
+constexpr std::int64_t reach = 96;    // rows searched one by one before the envelope takes over
 
 CRAZE_INLINE bool any(Eight condition)
 {
@@ -110,8 +110,8 @@ CRAZE_INLINE bool search(const Eight* f, Eight* out, std::int64_t n)
         std::int32_t d = 1;
         while (any(least > d * d)) {
             if (d > reach) return false;
-            // Two steps to a test.
-            for (const std::int32_t end = d + 2; d < end; ++d) {
+            // The farther, the more steps to a test.
+            for (const std::int32_t end = d + (d < 4 ? 1 : 4); d < end; ++d) {
                 const Eight a = f[y - d] + d * d, b = f[y + d] + d * d;
                 least = a < least ? a : least;
                 least = b < least ? b : least;
