@@ -3,7 +3,7 @@
 #pragma once
 
 #include "craze/core/mask.hpp"
-#include "craze/core/random.hpp"
+#include "support/random_masks.hpp"
 
 #include <string>
 #include <vector>
@@ -20,13 +20,6 @@ Mask mask_of(Shape shape, In&& in)
             for (std::int64_t x = 0; x < shape.nx; ++x)
                 if (in(x, y, z)) mask.set(x, y, z, true);
     return mask;
-}
-
-/// Each voxel in the set with probability `share`.
-inline Mask random_mask(Shape shape, double share, std::uint64_t seed)
-{
-    Random random(seed);
-    return mask_of(shape, [&](auto, auto, auto) { return random.uniform() < share; });
 }
 
 /// One slice drawn with '#'.

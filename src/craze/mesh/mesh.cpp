@@ -6,6 +6,7 @@
 #include "craze/core/progress.hpp"
 #include "craze/io/triangles.hpp"
 #include "craze/mesh/alpha_shape.hpp"
+#include "craze/mesh/medial_surface.hpp"
 #include "craze/mesh/skeleton.hpp"
 
 #include <fmt/format.h>
@@ -20,7 +21,9 @@ constexpr double smallest_alpha = 0.87;  // sqrt(3) / 2: voxels that share a cor
 
 void describe(Schema& schema, Settings& settings)
 {
-    schema.option("skeleton", settings.skeleton, {"per_slice"}, "per_slice thins each slice as the paper does");
+    schema.option(
+        "skeleton", settings.skeleton, {"per_slice", "medial_surface"},
+        "per_slice thins each slice (the paper); medial_surface thins in space: for cracks that lie in the slices");
     schema.choice("slice_axis", settings.slice_axis, {"x", "y", "z"},
                   "per_slice: the slices are perpendicular to this axis");
     schema.quantity("alpha", settings.alpha, Dimension::pixel, {smallest_alpha, largest_alpha},
@@ -41,7 +44,10 @@ CrackSurface mesh_cracks(const Mask& crack, double voxel_size, const Settings& s
     check(settings);
     if (!(voxel_size > 0.0))
         throw InvalidInput(fmt::format("mesh: the voxel size must be positive, got {} m", voxel_size));
-    LatticeSurface lattice = alpha_shape(skeleton_of_slices(crack, settings.slice_axis), settings.alpha);
+    LatticeSurface lattice =
+        alpha_shape(settings.skeleton == SkeletonKind::per_slice ? skeleton_of_slices(crack, settings.slice_axis)
+                                                                 : medial_surface(crack),
+                    settings.alpha);
     CrackSurface surface;
     surface.vertices.reserve(lattice.vertices.size());
     for (const auto& v : lattice.vertices)
@@ -53,7 +59,9 @@ CrackSurface mesh_cracks(const Mask& crack, double voxel_size, const Settings& s
 
 void save(const CrackSurface& surface, const std::filesystem::path& folder)
 {
-    io::write_ply(folder / "cracks.ply", {surface.vertices, surface.triangles, {{"sides", std::span(surface.sides)}}});
+    io::TriangleView view{surface.vertices, surface.triangles};
+    if (!surface.sides.empty()) view.fields.push_back({"sides", std::span(surface.sides)});
+    io::write_ply(folder / "cracks.ply", view);
 }
 
 CrackSurface load_surface(const std::filesystem::path& folder)
