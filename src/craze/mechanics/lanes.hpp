@@ -29,7 +29,8 @@ CRAZE_INLINE Pair load_pair(const double* p)
 CRAZE_INLINE void store(double* p, Lanes v) { std::memcpy(p, &v, sizeof v); }
 CRAZE_INLINE void store(double* p, Pair v) { std::memcpy(p, &v, sizeof v); }
 CRAZE_INLINE Lanes spread(double a) { return Lanes{a, a, a, a}; }
-CRAZE_INLINE Lanes sqrt(Lanes v) { return Lanes{std::sqrt(v[0]), std::sqrt(v[1]), std::sqrt(v[2]), std::sqrt(v[3])}; }
+CRAZE_INLINE double root(double v) { return std::sqrt(v); }
+CRAZE_INLINE Lanes root(Lanes v) { return Lanes{std::sqrt(v[0]), std::sqrt(v[1]), std::sqrt(v[2]), std::sqrt(v[3])}; }
 
 /// Rows become columns.
 CRAZE_INLINE void transpose(Lanes& a, Lanes& b, Lanes& c, Lanes& d)
@@ -57,6 +58,28 @@ CRAZE_INLINE Six gather_six(const double* p_0, const double* p_1, const double* 
     s.e = __builtin_shufflevector(low, high, 0, 4, 2, 6);
     s.f = __builtin_shufflevector(low, high, 1, 5, 3, 7);
     return s;
+}
+
+/// Rows of eight: three numbers, one unused, four numbers.
+struct Seven {
+    Lanes a, b, c, e, f, g, h;
+};
+CRAZE_INLINE Seven gather_seven(const double* p_0, const double* p_1, const double* p_2, const double* p_3)
+{
+    Lanes a = load(p_0), b = load(p_1), c = load(p_2), d = load(p_3);
+    Lanes e = load(p_0 + 4), f = load(p_1 + 4), g = load(p_2 + 4), h = load(p_3 + 4);
+    transpose(a, b, c, d);
+    transpose(e, f, g, h);
+    return {a, b, c, e, f, g, h};
+}
+
+CRAZE_INLINE void store_seven(double* p, Seven s)
+{
+    Lanes unused{};
+    transpose(s.a, s.b, s.c, unused);
+    transpose(s.e, s.f, s.g, s.h);
+    store(p, s.a), store(p + 8, s.b), store(p + 16, s.c), store(p + 24, unused);
+    store(p + 4, s.e), store(p + 12, s.f), store(p + 20, s.g), store(p + 28, s.h);
 }
 
 /// The rows of a Six: four first numbers and two last ones of each lane.

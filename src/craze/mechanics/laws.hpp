@@ -8,6 +8,7 @@
 
 #include "craze/core/multiversion.hpp"
 #include "craze/core/vec3.hpp"
+#include "craze/mechanics/lanes.hpp"
 #include "craze/mechanics/material.hpp"
 
 #include <algorithm>
@@ -101,6 +102,69 @@ CRAZE_INLINE BeamLoads<Real> small_displacement_beam(const BeamSection& s, Real 
     const Real along_1 = bend * (2.0 * a_1 + a_2), along_2 = bend * (a_1 + 2.0 * a_2);
     out.M_1 = (along_1 + out.T) * t - bend * (sum + w_1 - psi);
     out.M_2 = (along_2 - out.T) * t - bend * (sum + w_2 - psi);
+    return out;
+}
+
+/// A rotation: unit quaternion w + v.
+template <class Real>
+struct Turn {
+    Triple<Real> v;
+    Real w;
+};
+template <class Real>
+CRAZE_INLINE Triple<Real> turned(const Turn<Real>& q, const Triple<Real>& a)
+{
+    const Triple<Real> half = cross(q.v, a), c = half + half;
+    return a + q.w * c + cross(q.v, c);
+}
+
+/// Rotations of any size. Each end carries an axis b_a, the direction of the beam at rest turned with its element;
+/// bending is the angle of b_1 and b_2 with the chord t, torsion the turn of one end against the other about the axis.
+///
+/// The loads are minus the gradient of the energy
+///     EA (L - L_0)^2 / 2 L_0 + GJ phi^2 / 2 L_0 + (2 EI / L_0) (5 - 3 t.b_1 - 3 t.b_2 + b_1.b_2),
+/// phi = 2 vec(q_1* q_2) . t_0, which is that of the small-displacement beam to leading order (bending as in the
+/// vector-based model of Kuzkin and Asonov, Phys. Rev. E 86 (2012) 051301): energy is conserved, rigid motion is free.
+template <class Real>
+struct CorotationalBeam {
+    BeamLoads<Real> loads;
+    Real length;                    ///< L, m
+    Real bending_1_2, bending_2_2;  ///< squared bending moments of the ends, N2 m2
+    Real bending_energy;            ///< J
+};
+/// @param t_0  direction 1 -> 2 at rest     @param du  u_2 - u_1, m     @param q_1, q_2  rotations of the ends
+template <class Real>
+CRAZE_INLINE CorotationalBeam<Real> corotational_beam(const BeamSection& s, Real L_0, Real inv_L0,
+                                                      const Triple<Real>& t_0, const Triple<Real>& du,
+                                                      const Turn<Real>& q_1, const Turn<Real>& q_2)
+{
+    CorotationalBeam<Real> out;
+    const Triple<Real> d = L_0 * t_0 + du;
+    out.length = root(dot(d, d));
+    const Real inv_L = 1.0 / out.length;
+    const Triple<Real> t = inv_L * d;
+    const Triple<Real> b_1 = turned(q_1, t_0), b_2 = turned(q_2, t_0);
+    const Real bend = 2.0 * s.EI * inv_L0;
+
+    const Triple<Real> sum = b_1 + b_2;
+    const Real along = dot(t, sum);
+    out.loads.N = s.EA * inv_L0 * (out.length - L_0);
+    const Real shear = 3.0 * bend * inv_L;
+    out.loads.F_1 = (out.loads.N + shear * along) * t - shear * sum;
+
+    const Triple<Real> bending_1 = bend * cross(b_1, t + t + t - b_2), bending_2 = bend * cross(b_2, t + t + t - b_1);
+    out.bending_1_2 = dot(bending_1, bending_1), out.bending_2_2 = dot(bending_2, bending_2);
+    out.bending_energy = bend * (5.0 - 3.0 * along + dot(b_1, b_2));
+
+    // The turn of end 2 in the frame of end 1, and its gradient with respect to the turn of end 2.
+    const Triple<Real> v = q_2.w * t_0 + cross(q_2.v, t_0);
+    const Real c_t = dot(q_2.v, t_0);
+    const Triple<Real> axis = c_t * q_1.v + q_1.w * v - cross(v, q_1.v);
+    const Real half_phi = q_1.w * c_t - dot(q_1.v, v);
+    out.loads.T = s.GJ * inv_L0 * (half_phi + half_phi);
+    const Triple<Real> twist = out.loads.T * axis;
+    out.loads.M_1 = bending_1 + twist;
+    out.loads.M_2 = bending_2 - twist;
     return out;
 }
 

@@ -28,7 +28,7 @@ enum class Mass {
 struct MotionOptions {
     Geometry geometry = Geometry::corotational;
     Mass mass = Mass::uniform;
-    double step_fraction = 0.85;  ///< of the critical step 2 / omega_max, in (0, 1)
+    double step_fraction = 0.85;  ///< of the critical step 2 / omega_max, above 0; stable below 1
     double damping = 0.0;         ///< alpha, 1/s: force -alpha m (v - v_affine) on each free degree of freedom
     double strength = std::numeric_limits<double>::infinity();  ///< sigma_failure, Pa: beams break at or above [Eq. 24]
     bool free_contacts = true;                                  ///< let unbonded elements touch [Eq. 5]
@@ -77,6 +77,8 @@ public:
     /// Reference of the damping: v_affine,k = rate_k (x_k - centre of the box), 1/s.
     void set_affine_rate(const Vec3& rate);
     void set_damping(double alpha);
+    /// Velocities now, shape (n, 6), m/s and rad/s.
+    void set_velocity(std::span<const double> velocity);
     void set_strength(double sigma_failure);
 
     /// @throws ComputationFailed  when something moves faster than a bond length per step
@@ -93,7 +95,7 @@ public:
     /// Velocities now, shape (n, 6), m/s and rad/s.
     std::vector<double> velocity() const;
     const std::vector<BrokenBond>& broken() const;
-    const MotionState& stopped() const;
+    MotionState stopped() const;
 
 private:
     struct Work;

@@ -20,81 +20,59 @@ void Springs::add(std::int32_t from, std::int32_t to, const Vec3& t, double stif
     k.push_back(stiffness);
 }
 
-namespace {
-
-/// Loads four beams whose first is b.
-struct BeamBlock {
-    Triple<Lanes> t;
-    Lanes inv_length;
-};
-
-CRAZE_INLINE Six beam_rows(const BeamSection& s, const BeamBlock& beam, const Six& u_1, const Six& u_2, Six& out_2)
+void Beams::resize(std::size_t n)
 {
-    const Triple<Lanes> du{u_2.a - u_1.a, u_2.b - u_1.b, u_2.c - u_1.c};
-    const auto loads =
-        small_displacement_beam<Lanes>(s, beam.inv_length, beam.t, du, {u_1.d, u_1.e, u_1.f}, {u_2.d, u_2.e, u_2.f});
-    // K u is minus the force on the elements.
-    out_2 = {loads.F_1.x, loads.F_1.y, loads.F_1.z, -loads.M_2.x, -loads.M_2.y, -loads.M_2.z};
-    return {-loads.F_1.x, -loads.F_1.y, -loads.F_1.z, -loads.M_1.x, -loads.M_1.y, -loads.M_1.z};
+    count = static_cast<std::int64_t>(n);
+    // A pack may read past the last beam: harmless ones lie there.
+    i.assign(n + lanes, 0), j.assign(n + lanes, 0);
+    for (auto* values : {&tx, &ty, &tz, &inv_length}) values->assign(n + lanes, 0.0);
 }
 
-/// Beams [begin, end): rows of i always, rows of j where j < limit.
-CRAZE_MULTIVERSION void add_own(const BeamSection& s, const Beams& beams, std::int64_t begin, std::int64_t end,
-                                std::int64_t limit, const double* u, double* f)
+namespace {
+
+/// K u of beams [begin, end), rows of elements in [low, limit). One function for all beams: two would round differently
+/// where the compiler fuses products and sums.
+CRAZE_MULTIVERSION void add_beams(const BeamSection& s, const Beams& beams, std::int64_t begin, std::int64_t end,
+                                  std::int64_t low, std::int64_t limit, const double* u, double* f)
 {
-    const std::int32_t *bi = beams.i.data(), *bj = beams.j.data();
     for (std::int64_t b = begin; b < end; b += lanes) {
-        const std::int32_t *i = bi + b, *j = bj + b;
-        const BeamBlock beam{{load(beams.tx.data() + b), load(beams.ty.data() + b), load(beams.tz.data() + b)},
-                             load(beams.inv_length.data() + b)};
-        const Six u_1 = gather_six(u + 6 * i[0], u + 6 * i[1], u + 6 * i[2], u + 6 * i[3]);
-        const Six u_2 = gather_six(u + 6 * j[0], u + 6 * j[1], u + 6 * j[2], u + 6 * j[3]);
-        Six out_2;
-        const Rows row_1 = rows_of(beam_rows(s, beam, u_1, u_2, out_2)), row_2 = rows_of(out_2);
+        const std::int32_t *i = beams.i.data() + b, *j = beams.j.data() + b;
+        const Triple<Lanes> t{load(beams.tx.data() + b), load(beams.ty.data() + b), load(beams.tz.data() + b)};
+        const Six one = gather_six(u + 6 * i[0], u + 6 * i[1], u + 6 * i[2], u + 6 * i[3]);
+        const Six two = gather_six(u + 6 * j[0], u + 6 * j[1], u + 6 * j[2], u + 6 * j[3]);
+        const Triple<Lanes> du{two.a - one.a, two.b - one.b, two.c - one.c};
+        const auto l = small_displacement_beam<Lanes>(s, load(beams.inv_length.data() + b), t, du,
+                                                      {one.d, one.e, one.f}, {two.d, two.e, two.f});
+        // K u is minus the force on the elements.
+        const Rows row_1 = rows_of({-l.F_1.x, -l.F_1.y, -l.F_1.z, -l.M_1.x, -l.M_1.y, -l.M_1.z});
+        const Rows row_2 = rows_of({l.F_1.x, l.F_1.y, l.F_1.z, -l.M_2.x, -l.M_2.y, -l.M_2.z});
         const int count = static_cast<int>(std::min<std::int64_t>(lanes, end - b));
         for (int k = 0; k < count; ++k) {
-            add_row(f + 6 * i[k], row_1, k);
+            if (i[k] >= low) add_row(f + 6 * i[k], row_1, k);
             if (j[k] < limit) add_row(f + 6 * j[k], row_2, k);
         }
     }
 }
 
-/// Beams of a list, rows of j only.
-CRAZE_MULTIVERSION void add_border(const BeamSection& s, const Beams& beams, const std::vector<std::int32_t>& border,
-                                   const double* u, double* f)
+/// The same for springs.
+CRAZE_MULTIVERSION void add_springs(const Springs& s, std::int64_t begin, std::int64_t end, std::int64_t low,
+                                    std::int64_t limit, const double* u, double* f)
 {
-    const auto n = static_cast<std::int64_t>(border.size());
-    for (std::int64_t m = 0; m < n; m += lanes) {
-        std::size_t b[lanes];
-        for (int k = 0; k < lanes; ++k)
-            b[k] = static_cast<std::size_t>(border[static_cast<std::size_t>(std::min(m + k, n - 1))]);
-        double tx[lanes], ty[lanes], tz[lanes], inv_length[lanes];
-        const double *p[lanes], *q[lanes];
-        for (int k = 0; k < lanes; ++k) {
-            tx[k] = beams.tx[b[k]], ty[k] = beams.ty[b[k]], tz[k] = beams.tz[b[k]];
-            inv_length[k] = beams.inv_length[b[k]];
-            p[k] = u + 6 * beams.i[b[k]], q[k] = u + 6 * beams.j[b[k]];
-        }
-        const BeamBlock beam{{load(tx), load(ty), load(tz)}, load(inv_length)};
-        const Six u_1 = gather_six(p[0], p[1], p[2], p[3]), u_2 = gather_six(q[0], q[1], q[2], q[3]);
-        Six out_2;
-        beam_rows(s, beam, u_1, u_2, out_2);
-        const Rows row_2 = rows_of(out_2);
-        for (int k = 0; k < std::min<std::int64_t>(lanes, n - m); ++k) add_row(f + 6 * beams.j[b[k]], row_2, k);
+    for (std::int64_t k = begin; k < end; ++k) {
+        const auto b = static_cast<std::size_t>(k);
+        const double *p = u + 6 * s.i[b], *q = u + 6 * s.j[b];
+        const double stretch = s.tx[b] * (q[0] - p[0]) + s.ty[b] * (q[1] - p[1]) + s.tz[b] * (q[2] - p[2]);
+        const double N = s.k[b] * stretch, force[3] = {N * s.tx[b], N * s.ty[b], N * s.tz[b]};
+        if (s.i[b] >= low)
+            for (int c = 0; c < 3; ++c) f[6 * s.i[b] + c] -= force[c];
+        if (s.j[b] < limit)
+            for (int c = 0; c < 3; ++c) f[6 * s.j[b] + c] += force[c];
     }
 }
 
-CRAZE_INLINE void spring_force(const Springs& s, std::size_t b, const double* u, double force[3])
+std::int64_t first_from(const std::vector<std::int32_t>& i, std::int64_t count, std::int64_t element)
 {
-    const double *p = u + 6 * s.i[b], *q = u + 6 * s.j[b];
-    const double stretch = s.tx[b] * (q[0] - p[0]) + s.ty[b] * (q[1] - p[1]) + s.tz[b] * (q[2] - p[2]);
-    const double N = s.k[b] * stretch;
-    force[0] = N * s.tx[b], force[1] = N * s.ty[b], force[2] = N * s.tz[b];
-}
-
-CRAZE_INLINE std::int64_t first_with(const std::vector<std::int32_t>& i, std::int64_t element)
-{
-    return std::lower_bound(i.begin(), i.end(), element) - i.begin();
+    return std::lower_bound(i.begin(), i.begin() + count, element) - i.begin();
 }
 
 }  // namespace
@@ -103,12 +81,7 @@ Stiffness::Stiffness(const Lattice& lattice, std::span<const domain::BondKind> k
     : elements_(lattice.elements()), section_(lattice.section)
 {
     assert(kind.size() == lattice.i.size());
-    const auto n = static_cast<std::size_t>(std::count(kind.begin(), kind.end(), domain::BondKind::beam));
-    beams_.count = static_cast<std::int32_t>(n);
-    // A pack may read past the last beam: repeat harmless ones there.
-    const std::size_t padded = n + lanes;
-    for (auto* ends : {&beams_.i, &beams_.j}) ends->assign(padded, 0);
-    for (auto* values : {&beams_.tx, &beams_.ty, &beams_.tz, &beams_.inv_length}) values->assign(padded, 0.0);
+    beams_.resize(static_cast<std::size_t>(std::count(kind.begin(), kind.end(), domain::BondKind::beam)));
     std::size_t at = 0;
     for (std::size_t b = 0; b < kind.size(); ++b) {
         if (kind[b] != domain::BondKind::beam) continue;
@@ -122,59 +95,63 @@ Stiffness::Stiffness(const Lattice& lattice, std::span<const domain::BondKind> k
 void Stiffness::set_springs(Springs springs)
 {
     springs_ = std::move(springs);
-    share_out();
+    share_springs();
 }
 
 void Stiffness::share_out()
 {
-    // Pads are 0, out of order: search among the beams alone.
-    const auto beam_end = beams_.i.begin() + beams_.count;
-    const auto beam_from = [&](std::int64_t e) {
-        return std::lower_bound(beams_.i.begin(), beam_end, e) - beams_.i.begin();
-    };
-    const auto team = std::min<std::int64_t>(threads(), elements_);
+    const auto team = std::clamp<std::int64_t>(beams_.count / 512, 1, threads());  // threads that are worth their start
     shares_.assign(static_cast<std::size_t>(team), {});
+    const auto cut = [&](std::int64_t part) -> std::int64_t {
+        if (part == 0 || part == team) return part == 0 ? 0 : elements_;
+        return beams_.i[static_cast<std::size_t>(beams_.count * part / team)];
+    };
     for (std::int64_t s = 0; s < team; ++s) {
         Share& share = shares_[static_cast<std::size_t>(s)];
-        const auto cut = [&](std::int64_t part) -> std::int64_t {
-            if (part == 0) return 0;
-            if (part == team) return elements_;
-            const auto b = static_cast<std::size_t>(beams_.count * part / team);
-            return beams_.count > 0 ? beams_.i[b] : elements_ * part / team;
-        };
-        share.begin = cut(s), share.end = std::max(share.begin, cut(s + 1));
-        share.beam_begin = beam_from(share.begin), share.beam_end = beam_from(share.end);
-        for (std::int64_t b = 0; b < share.beam_begin; ++b) {
-            const auto j = beams_.j[static_cast<std::size_t>(b)];
-            if (j >= share.begin && j < share.end) share.border.push_back(static_cast<std::int32_t>(b));
+        share.begin = cut(s), share.end = cut(s + 1);
+        share.beam_begin = first_from(beams_.i, beams_.count, share.begin);
+        share.beam_end = first_from(beams_.i, beams_.count, share.end);
+        std::vector<std::size_t> border;
+        for (std::size_t b = 0; b < static_cast<std::size_t>(share.beam_begin); ++b)
+            if (beams_.j[b] >= share.begin && beams_.j[b] < share.end) border.push_back(b);
+        share.border_beams.resize(border.size());
+        for (std::size_t k = 0; k < border.size(); ++k) {
+            const std::size_t b = border[k];
+            share.border_beams.i[k] = beams_.i[b], share.border_beams.j[k] = beams_.j[b];
+            share.border_beams.tx[k] = beams_.tx[b], share.border_beams.ty[k] = beams_.ty[b];
+            share.border_beams.tz[k] = beams_.tz[b], share.border_beams.inv_length[k] = beams_.inv_length[b];
         }
-        share.spring_begin = first_with(springs_.i, share.begin), share.spring_end = first_with(springs_.i, share.end);
-        for (std::int64_t b = 0; b < share.spring_begin; ++b) {
-            const auto j = springs_.j[static_cast<std::size_t>(b)];
-            if (j >= share.begin && j < share.end) share.spring_border.push_back(static_cast<std::int32_t>(b));
-        }
+    }
+    share_springs();
+}
+
+void Stiffness::share_springs()
+{
+    for (Share& share : shares_) {
+        share.spring_begin = first_from(springs_.i, springs_.size(), share.begin);
+        share.spring_end = first_from(springs_.i, springs_.size(), share.end);
+        share.border_springs = {};
+        for (std::size_t b = 0; b < static_cast<std::size_t>(share.spring_begin); ++b)
+            if (springs_.j[b] >= share.begin && springs_.j[b] < share.end)
+                share.border_springs.add(springs_.i[b], springs_.j[b], {springs_.tx[b], springs_.ty[b], springs_.tz[b]},
+                                         springs_.k[b]);
     }
 }
 
-void Stiffness::apply_share(const Share& share, const double* u, double* f, bool with_springs) const
+void Stiffness::apply(std::span<const double> u, std::span<double> f, bool with_springs) const
 {
-    std::fill(f + 6 * share.begin, f + 6 * share.end, 0.0);
-    add_border(section_, beams_, share.border, u, f);
-    add_own(section_, beams_, share.beam_begin, share.beam_end, share.end, u, f);
-    if (!with_springs) return;
-    double force[3];
-    for (const std::int32_t b : share.spring_border) {
-        const auto k = static_cast<std::size_t>(b);
-        spring_force(springs_, k, u, force);
-        for (int c = 0; c < 3; ++c) f[6 * springs_.j[k] + c] += force[c];
-    }
-    for (std::int64_t b = share.spring_begin; b < share.spring_end; ++b) {
-        const auto k = static_cast<std::size_t>(b);
-        spring_force(springs_, k, u, force);
-        for (int c = 0; c < 3; ++c) f[6 * springs_.i[k] + c] -= force[c];
-        if (springs_.j[k] < share.end)
-            for (int c = 0; c < 3; ++c) f[6 * springs_.j[k] + c] += force[c];
-    }
+    assert(std::ssize(u) == 6 * elements_ && std::ssize(f) == 6 * elements_);
+    parallel_ranges(std::ssize(shares_), [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t k = begin; k < end; ++k) {
+            const Share& s = shares_[static_cast<std::size_t>(k)];
+            std::fill(f.begin() + 6 * s.begin, f.begin() + 6 * s.end, 0.0);
+            add_beams(section_, s.border_beams, 0, s.border_beams.count, s.begin, s.end, u.data(), f.data());
+            add_beams(section_, beams_, s.beam_begin, s.beam_end, s.begin, s.end, u.data(), f.data());
+            if (!with_springs) continue;
+            add_springs(s.border_springs, 0, s.border_springs.size(), s.begin, s.end, u.data(), f.data());
+            add_springs(springs_, s.spring_begin, s.spring_end, s.begin, s.end, u.data(), f.data());
+        }
+    });
 }
 
 namespace {
@@ -205,38 +182,31 @@ void add_end_block(double* block, const BeamSection& s, const Vec3& t, double in
 void Stiffness::diagonal(std::span<double> blocks) const
 {
     assert(std::ssize(blocks) == 36 * elements_);
-    const auto block_of = [&](std::int32_t e) { return blocks.data() + 36 * static_cast<std::int64_t>(e); };
-    const auto beam_t = [&](std::size_t b) { return Vec3{beams_.tx[b], beams_.ty[b], beams_.tz[b]}; };
-    const auto spring_t = [&](std::size_t b) { return Vec3{springs_.tx[b], springs_.ty[b], springs_.tz[b]}; };
-    parallel_tasks(std::ssize(shares_), [&](std::int64_t s) {
-        const Share& share = shares_[static_cast<std::size_t>(s)];
-        const auto beam_end_2 = [&](std::size_t b) {
-            add_end_block(block_of(beams_.j[b]), section_, beam_t(b), beams_.inv_length[b], -1.0);
-        };
-        for (const auto b : share.border) beam_end_2(static_cast<std::size_t>(b));
-        for (std::int64_t k = share.beam_begin; k < share.beam_end; ++k) {
-            const auto b = static_cast<std::size_t>(k);
-            add_end_block(block_of(beams_.i[b]), section_, beam_t(b), beams_.inv_length[b], 1.0);
-            if (beams_.j[b] < share.end) beam_end_2(b);
+    const auto add = [&](const Share& s, const Beams& beams, std::int64_t begin, std::int64_t end) {
+        for (auto b = static_cast<std::size_t>(begin); b < static_cast<std::size_t>(end); ++b) {
+            const Vec3 t{beams.tx[b], beams.ty[b], beams.tz[b]};
+            const double inv_L = beams.inv_length[b];
+            if (beams.i[b] >= s.begin)
+                add_end_block(blocks.data() + 36 * std::int64_t{beams.i[b]}, section_, t, inv_L, 1.0);
+            if (beams.j[b] < s.end)
+                add_end_block(blocks.data() + 36 * std::int64_t{beams.j[b]}, section_, t, inv_L, -1.0);
         }
-        for (const auto b : share.spring_border) {
-            const auto k = static_cast<std::size_t>(b);
-            add_projector(block_of(springs_.j[k]), 0.0, springs_.k[k], spring_t(k));
+    };
+    const auto add_axial = [&](const Share& s, const Springs& springs, std::int64_t begin, std::int64_t end) {
+        for (auto b = static_cast<std::size_t>(begin); b < static_cast<std::size_t>(end); ++b) {
+            const Vec3 t{springs.tx[b], springs.ty[b], springs.tz[b]};
+            if (springs.i[b] >= s.begin)
+                add_projector(blocks.data() + 36 * std::int64_t{springs.i[b]}, 0.0, springs.k[b], t);
+            if (springs.j[b] < s.end)
+                add_projector(blocks.data() + 36 * std::int64_t{springs.j[b]}, 0.0, springs.k[b], t);
         }
-        for (std::int64_t k = share.spring_begin; k < share.spring_end; ++k) {
-            const auto b = static_cast<std::size_t>(k);
-            add_projector(block_of(springs_.i[b]), 0.0, springs_.k[b], spring_t(b));
-            if (springs_.j[b] < share.end) add_projector(block_of(springs_.j[b]), 0.0, springs_.k[b], spring_t(b));
-        }
-    });
-}
-
-void Stiffness::apply(std::span<const double> u, std::span<double> f, bool with_springs) const
-{
-    assert(std::ssize(u) == 6 * elements_ && std::ssize(f) == 6 * elements_);
-    parallel_ranges(std::ssize(shares_), [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t s = begin; s < end; ++s)
-            apply_share(shares_[static_cast<std::size_t>(s)], u.data(), f.data(), with_springs);
+    };
+    parallel_tasks(std::ssize(shares_), [&](std::int64_t k) {
+        const Share& s = shares_[static_cast<std::size_t>(k)];
+        add(s, s.border_beams, 0, s.border_beams.count);
+        add(s, beams_, s.beam_begin, s.beam_end);
+        add_axial(s, s.border_springs, 0, s.border_springs.size());
+        add_axial(s, springs_, s.spring_begin, s.spring_end);
     });
 }
 

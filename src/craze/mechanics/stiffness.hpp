@@ -25,7 +25,8 @@ struct Springs {
 struct Beams {
     std::vector<std::int32_t> i, j;
     std::vector<double> tx, ty, tz, inv_length;
-    std::int32_t count = 0;
+    std::int64_t count = 0;
+    void resize(std::size_t n);  ///< and pad
 };
 
 /// f = K u for the beams of a state and a list of springs.
@@ -50,16 +51,16 @@ public:
     const BeamSection& section() const { return section_; }
 
 private:
-    /// What one thread adds up: bonds with i in its range, and those that only end there.
+    /// What one thread adds up: bonds with i in its range, and copies of those that only end there.
     struct Share {
-        std::int64_t begin = 0, end = 0;            ///< elements
-        std::int64_t beam_begin = 0, beam_end = 0;  ///< own beams
-        std::vector<std::int32_t> border;           ///< beams with i < begin and j in [begin, end)
+        std::int64_t begin = 0, end = 0;  ///< elements
+        std::int64_t beam_begin = 0, beam_end = 0;
         std::int64_t spring_begin = 0, spring_end = 0;
-        std::vector<std::int32_t> spring_border;
+        Beams border_beams;
+        Springs border_springs;
     };
     void share_out();
-    void apply_share(const Share& share, const double* u, double* f, bool with_springs) const;
+    void share_springs();
 
     std::int64_t elements_ = 0;
     BeamSection section_;

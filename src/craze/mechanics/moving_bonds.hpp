@@ -1,0 +1,47 @@
+// The bond kernel of motion: what the bonds of a range of elements add to the forces, in either geometry.
+
+#pragma once
+
+#include "craze/mechanics/lattice.hpp"
+#include "craze/mechanics/motion.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace craze::mechanics {
+
+/// Bonds laid out for the kernel, structure of arrays, sorted by (i, j) and padded for the lanes.
+struct MovingBonds {
+    std::vector<std::int32_t> i, j;
+    std::vector<double> tx, ty, tz, length, inv_length;
+    std::vector<double> slack;  ///< T of a contact beam, m; -1 for a beam
+    std::int64_t count = 0;
+};
+MovingBonds moving_bonds(const Lattice& lattice, std::span<const domain::BondKind> kind);
+/// Some of them, in the order of the list.
+MovingBonds selected(const MovingBonds& bonds, std::span<const std::int32_t> list);
+
+/// Which rows a pass fills, what it looks for and what it finds.
+struct BondPass {
+    Geometry geometry = Geometry::corotational;
+    std::int64_t low = 0, limit = 0;   ///< rows are filled of elements in [low, limit)
+    double strength = 0.0;             ///< Pa; infinite: nothing breaks
+    bool measure = false;              ///< add up the elastic energy
+    double energy = 0.0;               ///< out: J
+    std::vector<std::int32_t> broken;  ///< out: beams that reached the strength
+};
+
+/// What bonds [begin, end) add to the rows of `force` (n, 6), from rows of `pose` (n, 8). One function for all bonds:
+/// two would round differently where the compiler fuses products and sums.
+void add_bonds(const BeamSection& section, const MovingBonds& bonds, std::int64_t begin, std::int64_t end,
+               const double* pose, double* force, BondPass& pass);
+
+/// Elastic energy of bond b as a beam and as a contact beam, J.
+struct BondEnergy {
+    double beam = 0.0, contact = 0.0;
+};
+BondEnergy bond_energy(const BeamSection& section, const MovingBonds& bonds, std::int64_t b, Geometry geometry,
+                       const double* pose);
+
+}  // namespace craze::mechanics

@@ -1,0 +1,58 @@
+// Unbonded elements that meet.
+
+#pragma once
+
+#include "craze/mechanics/lattice.hpp"
+#include "craze/mechanics/motion.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace craze::mechanics {
+
+/// Unbonded pairs, structure of arrays, i < j, sorted by (i, j).
+struct Pairs {
+    std::vector<std::int32_t> i, j;
+    std::vector<double> dx, dy, dz;  ///< from centre i to centre j at rest, m
+    std::vector<double> distance;    ///< |d|, m
+    std::vector<double> limit;       ///< contact distance, m
+
+    std::int64_t size() const { return std::ssize(i); }
+    void add(const Pairs& from, std::size_t p);
+};
+
+/// Keeps the pairs that may touch: all near ones, searched anew when elements have moved far, and of these the few
+/// whose gap is small, chosen anew when elements have moved a little. In small displacements the pairs are the
+/// lattice's.
+class Neighbours {
+public:
+    Neighbours(const Lattice& lattice, Geometry geometry);
+    /// Makes sure that every pair that touches now is active.
+    /// @param pose   shape (n, 8)
+    /// @param moved  how much nearer any two near elements may have come since the last call, m
+    /// @return whether the active pairs have changed
+    bool follow(std::span<const double> pose, double moved);
+    const Pairs& active() const { return active_; }
+    std::int64_t searches() const { return searches_; }
+
+private:
+    void search(std::span<const double> pose);
+    void choose(std::span<const double> pose);
+
+    const Lattice& lattice_;
+    Geometry geometry_;
+    double reach_, skin_;                               ///< m
+    double until_search_ = -1.0, until_choice_ = -1.0;  ///< m of approach left
+    Pairs near_, active_;
+    std::int64_t searches_ = 0;
+};
+
+/// Pushes of the pairs in [begin, end) on rows of i, and of j below the limit. Gives their energy, J.
+double add_pairs(const Pairs& pairs, std::int64_t begin, std::int64_t end, double stiffness, Geometry geometry,
+                 std::int64_t limit, const double* pose, double* force);
+/// Listed pairs: rows of j alone.
+void add_border_pairs(const Pairs& pairs, std::span<const std::int32_t> list, double stiffness, Geometry geometry,
+                      const double* pose, double* force);
+
+}  // namespace craze::mechanics
