@@ -24,10 +24,22 @@ void describe(Schema& schema, Settings& s)
                     "step of the radii tried for local thickness");
     schema.flag("intermediates", s.intermediates, "write the closed and the enlarged pores of Fig. 6 too");
     schema.flag("figures", s.figures, "write pictures");
+    schema.group("sweep", "what --sweep tries for R_C and R_E, and what it takes for good", [&] {
+        schema.quantity("least", s.sweep.least, Dimension::pixel, {0.5, 100}, "smallest radius");
+        schema.quantity("most", s.sweep.most, Dimension::pixel, {0.5, 100}, "largest radius");
+        schema.quantity("step", s.sweep.step, Dimension::pixel, {0.1, 20}, "between radii");
+        schema.quantity("thin_share", s.sweep.thin_share, Dimension::fraction, {0, 1},
+                        "share of the closed pores that may be thin elongated objects");
+        schema.quantity("shell_share", s.sweep.shell_share, Dimension::fraction, {0, 1},
+                        "share of the cracks that may be shells around pores");
+    });
 }
 
 void check(const Settings& s)
 {
+    if (s.sweep.most < s.sweep.least)
+        throw InvalidInput(fmt::format("microstructure.sweep.most: needs at least sweep.least ({} px), got {} px",
+                                       s.sweep.least, s.sweep.most));
     if (s.R_E > s.R_C)
         throw InvalidInput(
             fmt::format("microstructure.R_E: needs a radius up to R_C ({} px), got {} px; a larger one "

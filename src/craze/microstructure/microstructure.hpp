@@ -23,6 +23,13 @@ struct Microstructure {
 
 enum class ThresholdMethod { moments = 0, otsu = 1, entropy = 2, fixed = 3 };
 
+/// What the sweep tries, and what it takes for good: sweep.hpp.
+struct SweepSettings {
+    double least = 1.5, most = 20.5, step = 1.0;  ///< px
+    double thin_share = 0.01;
+    double shell_share = 5e-4;
+};
+
 struct Settings {
     ThresholdMethod threshold = ThresholdMethod::moments;
     std::int64_t level = 128;  ///< S of the method `fixed`: void where gray < S
@@ -33,6 +40,7 @@ struct Settings {
     double thickness_step = 0.5;  ///< px, between the radii tried for local thickness
     bool intermediates = false;   ///< write img. 1a and 1b of Fig. 6 too
     bool figures = true;          ///< write pictures
+    SweepSettings sweep;
 };
 
 void describe(Schema& schema, Settings& settings);

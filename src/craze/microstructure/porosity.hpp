@@ -1,4 +1,4 @@
-// How much void there is, and where [2.6, Eqs. 1 and 2].
+// How much void there is, and where [2.6] [Eq. 1] [Eq. 2].
 
 #pragma once
 
