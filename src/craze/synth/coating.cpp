@@ -66,7 +66,7 @@ CrackView view(const Crack& crack, const Vec3& point)
 {
     const Vec3 rel = point - crack.centre;
     const double u = dot(rel, crack.frame.u), v = dot(rel, crack.frame.v), w = dot(rel, crack.frame.n);
-    const double rho2 = (u / crack.a) * (u / crack.a) + (v / crack.b) * (v / crack.b);
+    const double rho2 = rim(crack, u, v);
     double g = crack.curvature * (0.5 * u * u - 0.125 * crack.a * crack.a), g_u = crack.curvature * u, g_v = 0.0;
     for (std::size_t k = 0; k < 2; ++k) {
         if (crack.wave_height[k] == 0.0) continue;
@@ -81,6 +81,11 @@ CrackView view(const Crack& crack, const Vec3& point)
                         : crack.profile == ApertureProfile::lens ? crack.aperture * std::sqrt(1.0 - rho2)
                                                                  : crack.aperture;
     return {rho2, (w - g) / stretch, open, (crack.frame.n - g_u * crack.frame.u - g_v * crack.frame.v) / stretch};
+}
+
+double reach(const Crack& crack)
+{
+    return crack.outline == Outline::ellipse ? std::max(crack.a, crack.b) : std::hypot(crack.a, crack.b);
 }
 
 double relief(const Crack& crack)
@@ -98,7 +103,8 @@ double volume(const Crack& crack)
     for (std::size_t k = 0; k < 2; ++k)
         slope2 += 0.5 * crack.wave_height[k] * crack.wave_height[k] *
                   (crack.wave_u[k] * crack.wave_u[k] + crack.wave_v[k] * crack.wave_v[k]);
-    return pi * crack.a * crack.b * crack.aperture * mean_profile * (1.0 + 0.5 * slope2);
+    const double area = (crack.outline == Outline::ellipse ? pi : 4.0) * crack.a * crack.b;
+    return area * crack.aperture * mean_profile * (1.0 + 0.5 * slope2);
 }
 
 bool in_pore(const Coating& coating, const Vec3& point)
@@ -136,8 +142,10 @@ mesh::CrackSurface crack_surface(const Coating& coating, double step)
         std::vector<Vec3> points{on_sheet(crack, 0, 0)};
         for (int k = 1; k <= rings; ++k)
             for (int i = 0; i < 6 * k; ++i) {
-                const double angle = 2 * pi * i / (6.0 * k), rho = static_cast<double>(k) / rings;
-                points.push_back(on_sheet(crack, crack.a * rho * std::cos(angle), crack.b * rho * std::sin(angle)));
+                const double angle = 2 * pi * i / (6.0 * k), c = std::cos(angle), s = std::sin(angle);
+                const double rho = static_cast<double>(k) / rings /
+                                   (crack.outline == Outline::ellipse ? 1.0 : std::max(std::abs(c), std::abs(s)));
+                points.push_back(on_sheet(crack, crack.a * rho * c, crack.b * rho * s));
             }
         std::vector<std::int32_t> renumbered(points.size(), -1);
         const auto add = [&](int p, int q, int r) {

@@ -6,8 +6,10 @@
 #include "craze/core/vec3.hpp"
 #include "craze/mesh/crack_surface.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace craze::synth {
@@ -49,13 +51,17 @@ enum class ApertureProfile {
     flat,  ///< t_0 up to the rim
 };
 
-/// A thin void: a mid-surface of height g(u, v) over an ellipse of its plane, opened by t(u, v) across the surface.
+enum class Outline { ellipse, rectangle };
+
+/// A thin void: a mid-surface of height g(u, v) over an ellipse or a rectangle of its plane, opened by t(u, v) across
+/// the surface.
 struct Crack {
     Vec3 centre;              ///< m
     Frame frame;              ///< n is the normal of its plane
     double a = 0.0, b = 0.0;  ///< semi-axes along u and v, m
     double aperture = 0.0;    ///< t_0: opening in the middle, m
     ApertureProfile profile = ApertureProfile::lens;
+    Outline outline = Outline::ellipse;
     double curvature = 0.0;  ///< bend about v, 1/m: g gets curvature u^2 / 2, its mean over the ellipse taken off
     std::array<double, 2> wave_height{};       ///< m: g gets wave_height sin(wave_u u + wave_v v + phase), twice
     std::array<double, 2> wave_u{}, wave_v{};  ///< 1/m
@@ -65,11 +71,19 @@ struct Crack {
 
 /// Where a point lies as seen from a crack.
 struct CrackView {
-    double rho2;      ///< (u/a)^2 + (v/b)^2: 1 at the rim
+    double rho2;      ///< see rim(): 1 at the rim
     double distance;  ///< from the mid-surface, signed, m
     double opening;   ///< t at the foot of the point, m; 0 outside the rim
     Vec3 normal;      ///< of the mid-surface there
 };
+/// rho^2 of a point of the plane: (u/a)^2 + (v/b)^2, for a rectangle the greater of the two. 1 at the rim.
+inline double rim(const Crack& crack, double u, double v)
+{
+    const double p = u / crack.a, q = v / crack.b;
+    return crack.outline == Outline::ellipse ? p * p + q * q : std::max(p * p, q * q);
+}
+/// Greatest distance of the rim from the centre, in the plane, m.
+double reach(const Crack& crack);
 CrackView view(const Crack& crack, const Vec3& point);
 /// Greatest |g| over the ellipse (a bound, m).
 double relief(const Crack& crack);
@@ -81,6 +95,7 @@ struct Coating {
     Vec3 size;  ///< m
     std::vector<Pore> pores;
     std::vector<Crack> cracks;
+    std::vector<std::string> pore_names{}, crack_names{};  ///< of the populations
 };
 
 /// Is the point in a pore?

@@ -59,7 +59,7 @@ Cutter::Cutter(const Coating& coating, double reach) : coating_(coating), edge_(
     for (std::size_t c = 0; c < coating.cracks.size(); ++c) {
         const Crack& crack = coating.cracks[c];
         const double high = relief(crack);
-        add(cracks_, static_cast<std::int32_t>(c), crack.centre, std::max(crack.a, crack.b) + high + around,
+        add(cracks_, static_cast<std::int32_t>(c), crack.centre, craze::synth::reach(crack) + high + around,
             [&](const Vec3& p) { return std::abs(dot(p - crack.centre, crack.frame.n)) <= high + around; });
     }
     for (std::size_t p = 0; p < coating.pores.size(); ++p) {

@@ -14,16 +14,6 @@ namespace {
 
 using std::numbers::pi;
 
-double draw(const Length& length, Random& random)
-{
-    if (length.spread == 0.0) return length.median;
-    for (int tries = 0; tries < 1000; ++tries) {
-        const double value = random.lognormal(length.median, length.spread);
-        if (value >= length.least && value <= length.most) return value;
-    }
-    return length.median;
-}
-
 Vec3 direction(Random& random)
 {
     for (;;) {
@@ -219,7 +209,7 @@ void open_to(double share, std::size_t first, Coating& coating)
     Coating alone{coating.size,
                   coating.pores,
                   {coating.cracks.begin() + static_cast<std::ptrdiff_t>(first), coating.cracks.end()}};
-    const double grid = std::cbrt(coating.size.x * coating.size.y * coating.size.z) / 128.0;
+    const double grid = std::cbrt(coating.size.x * coating.size.y * coating.size.z) / 96.0;
     for (int round = 0; round < 2; ++round) {
         const double found = porosity(alone, grid).cracks;
         if (!(found > 0.0)) return;
@@ -294,8 +284,12 @@ void place_cracks(const CrackPopulation& c, std::int32_t number, const Settings&
 Coating make_coating(const Settings& settings)
 {
     check(settings);
+    if (settings.generator == Generator::splats)
+        return spray(settings.splats, box_of(settings), static_cast<std::uint64_t>(settings.seed));
     Coating coating;
     coating.size = box_of(settings);
+    for (const auto& p : settings.pores) coating.pore_names.push_back(p.name);
+    for (const auto& c : settings.cracks) coating.crack_names.push_back(c.name);
     for (std::size_t i = 0; i < settings.pores.size(); ++i)
         place_pores(settings.pores[i], static_cast<std::int32_t>(i), settings, coating);
     for (std::size_t i = 0; i < settings.cracks.size(); ++i)

@@ -32,39 +32,48 @@ double reach_of(const Ellipsoid& body, int axis)
     return std::sqrt(u * u + v * v + n * n);
 }
 
-void render_pore(const Pore& pore, const SliceGrid& grid, std::span<float> share)
+/// Lobes of one pore are joined by the greatest share; `own` (zero before and after) holds them while it is drawn.
+void render_pore(const Pore& pore, const SliceGrid& grid, std::span<float> share, std::span<float> own)
 {
-    Vec3 least{1e300, 1e300, 1e300}, most{-1e300, -1e300, -1e300};
-    for (const auto& lobe : pore.lobes)
-        for (int axis = 0; axis < 3; ++axis) {
-            const double reach = reach_of(lobe, axis) + half_diagonal * grid.h;
-            least[axis] = std::min(least[axis], lobe.centre[axis] - reach);
-            most[axis] = std::max(most[axis], lobe.centre[axis] + reach);
-        }
-    if (grid.origin.z < least.z || grid.origin.z > most.z) return;
-    const Run rows = run_of(least.y, most.y, grid.origin.y, grid.h, grid.ny);
-    const Run columns = run_of(least.x, most.x, grid.origin.x, grid.h, grid.nx);
-    for (std::int64_t y = rows.begin; y < rows.end; ++y)
-        for (std::int64_t x = columns.begin; x < columns.end; ++x) {
-            const Facing seen = facing(pore, {grid.origin.x + static_cast<double>(x) * grid.h,
-                                              grid.origin.y + static_cast<double>(y) * grid.h, grid.origin.z});
-            // A curved face lies behind its tangent plane by curvature h / 12 on average over a voxel's section.
-            const double distance = seen.distance / grid.h + std::min(0.1, seen.curvature * grid.h / 12.0);
-            if (distance >= half_diagonal) continue;
-            float& here = share[static_cast<std::size_t>(x + grid.nx * y)];
-            // The void lies where normal . x < -distance from the voxel's centre.
-            here = 1.0F - (1.0F - here) * (1.0F - static_cast<float>(share_below_plane(seen.normal, -distance)));
-        }
+    struct Window {
+        Run rows, columns;
+    };
+    std::vector<Window> windows;
+    for (const auto& lobe : pore.lobes) {
+        const double margin = half_diagonal * grid.h;
+        if (std::abs(grid.origin.z - lobe.centre.z) > reach_of(lobe, 2) + margin) continue;
+        const double dx = reach_of(lobe, 0) + margin, dy = reach_of(lobe, 1) + margin;
+        const Run rows = run_of(lobe.centre.y - dy, lobe.centre.y + dy, grid.origin.y, grid.h, grid.ny);
+        const Run columns = run_of(lobe.centre.x - dx, lobe.centre.x + dx, grid.origin.x, grid.h, grid.nx);
+        windows.push_back({rows, columns});
+        for (std::int64_t y = rows.begin; y < rows.end; ++y)
+            for (std::int64_t x = columns.begin; x < columns.end; ++x) {
+                const Facing seen = facing(lobe, {grid.origin.x + static_cast<double>(x) * grid.h,
+                                                  grid.origin.y + static_cast<double>(y) * grid.h, grid.origin.z});
+                // A curved face lies behind its tangent plane by curvature h / 12 on average over a voxel's section.
+                const double distance = seen.distance / grid.h + std::min(0.1, seen.curvature * grid.h / 12.0);
+                if (distance >= half_diagonal) continue;
+                float& here = own[static_cast<std::size_t>(x + grid.nx * y)];
+                // The void lies where normal . x < -distance from the voxel's centre.
+                here = std::max(here, static_cast<float>(share_below_plane(seen.normal, -distance)));
+            }
+    }
+    for (const auto& window : windows)
+        for (std::int64_t y = window.rows.begin; y < window.rows.end; ++y)
+            for (std::int64_t x = window.columns.begin; x < window.columns.end; ++x) {
+                const auto i = static_cast<std::size_t>(x + grid.nx * y);
+                share[i] = 1.0F - (1.0F - share[i]) * (1.0F - own[i]);
+                own[i] = 0.0F;
+            }
 }
 
 void render_crack(const Crack& crack, const SliceGrid& grid, std::span<float> share)
 {
     const double margin = half_diagonal * grid.h;
-    const double radius = std::max(crack.a, crack.b);
+    const double radius = reach(crack);
     // Slopes are below about 1, so the part of a voxel's diagonal across the plane covers the opening across the sheet.
     const double thick = relief(crack) + crack.aperture + 2.0 * margin;
     const double ball = std::sqrt(radius * radius + thick * thick);
-    const double inverse_a2 = 1.0 / (crack.a * crack.a), inverse_b2 = 1.0 / (crack.b * crack.b);
     const double dz = grid.origin.z - crack.centre.z;
     if (std::abs(dz) > ball) return;
     const double in_slice = std::sqrt(ball * ball - dz * dz);
@@ -87,7 +96,7 @@ void render_crack(const Crack& crack, const SliceGrid& grid, std::span<float> sh
         for (std::int64_t x = columns.begin; x < columns.end; ++x) {
             const double dx = grid.origin.x + static_cast<double>(x) * grid.h - crack.centre.x;
             const double u = dx * crack.frame.u.x + u_row, v = dx * crack.frame.v.x + v_row;
-            if (u * u * inverse_a2 + v * v * inverse_b2 >= 1.0) continue;
+            if (rim(crack, u, v) >= 1.0) continue;
             const CrackView seen =
                 view(crack, {grid.origin.x + static_cast<double>(x) * grid.h, crack.centre.y + dy, grid.origin.z});
             const double opening = 0.5 * seen.opening / grid.h, distance = seen.distance / grid.h;
@@ -127,7 +136,7 @@ void render_slice(const Coating& coating, const SliceGrid& grid, std::span<float
 {
     std::fill(pore.begin(), pore.end(), 0.0F);
     std::fill(crack.begin(), crack.end(), 0.0F);
-    for (const auto& body : coating.pores) render_pore(body, grid, pore);
+    for (const auto& body : coating.pores) render_pore(body, grid, pore, crack);
     for (const auto& sheet : coating.cracks) render_crack(sheet, grid, crack);
     for (std::size_t i = 0; i < pore.size(); ++i) crack[i] *= 1.0F - pore[i];
 }

@@ -20,12 +20,13 @@ std::string_view kind(const Pore& pore) { return pore.lobes.size() > 1 ? "irregu
 
 std::string_view kind(const Crack& crack)
 {
+    if (crack.outline == Outline::rectangle) return "rectangular crack";
     if (crack.curvature != 0.0) return "bent crack";
     if (crack.wave_height[0] != 0.0) return "wavy crack";
     return crack.a == crack.b ? "disc crack" : "elliptic crack";
 }
 
-std::string table_of_defects(const Coating& coating, const Settings& settings)
+std::string table_of_defects(const Coating& coating)
 {
     std::string csv = "kind,population,x_m,y_m,z_m,normal_x,normal_y,normal_z,a_m,b_m,c_or_aperture_m,lobes\n";
     const auto row = [&](std::string_view what, const std::string& population, const Vec3& at, const Vec3& n, double a,
@@ -35,11 +36,11 @@ std::string table_of_defects(const Coating& coating, const Settings& settings)
     };
     for (const auto& pore : coating.pores) {
         const Ellipsoid& main = pore.lobes.front();
-        row(kind(pore), settings.pores[static_cast<std::size_t>(pore.population)].name, main.centre, main.frame.n,
+        row(kind(pore), coating.pore_names[static_cast<std::size_t>(pore.population)], main.centre, main.frame.n,
             main.semi.x, main.semi.y, main.semi.z, pore.lobes.size());
     }
     for (const auto& crack : coating.cracks)
-        row(kind(crack), settings.cracks[static_cast<std::size_t>(crack.population)].name, crack.centre, crack.frame.n,
+        row(kind(crack), coating.crack_names[static_cast<std::size_t>(crack.population)], crack.centre, crack.frame.n,
             crack.a, crack.b, crack.aperture, 0);
     return csv;
 }
@@ -74,15 +75,15 @@ Json summary(const Coating& coating, const Observation& observation, const Setti
         if (in) cubes += std::pow(crack.a * crack.b, 1.5);
     }
     Json populations = Json::array();
-    for (std::size_t p = 0; p < settings.pores.size(); ++p)
+    for (std::size_t p = 0; p < coating.pore_names.size(); ++p)
         populations.push_back(
-            {{"name", settings.pores[p].name},
+            {{"name", coating.pore_names[p]},
              {"defects", std::count_if(coating.pores.begin(), coating.pores.end(), [&](const Pore& pore) {
                   return pore.population == static_cast<std::int32_t>(p);
               })}});
-    for (std::size_t p = 0; p < settings.cracks.size(); ++p)
+    for (std::size_t p = 0; p < coating.crack_names.size(); ++p)
         populations.push_back(
-            {{"name", settings.cracks[p].name},
+            {{"name", coating.crack_names[p]},
              {"defects", std::count_if(coating.cracks.begin(), coating.cracks.end(), [&](const Crack& crack) {
                   return crack.population == static_cast<std::int32_t>(p);
               })}});
@@ -104,7 +105,7 @@ void save(const Coating& coating, const Observation& observation, const Settings
     const double h = settings.voxel_size;
     io::write_volume(folder / "stack.tif", observation.stack.level, h);
     io::write_volume(folder / "truth.mhd", observation.label, h);
-    io::write_text(folder / "defects.csv", table_of_defects(coating, settings));
+    io::write_text(folder / "defects.csv", table_of_defects(coating));
     write_ply(folder / "cracks.ply", crack_surface(coating, 4.0 * h));
     Json truth = summary(coating, observation, settings);
     truth["labels"] = {{"matter", 255}, {"pore", 0}, {"crack", 128}};

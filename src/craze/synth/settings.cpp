@@ -11,23 +11,6 @@ namespace {
 
 constexpr Range sizes{1e-9, 1e-3};
 
-void describe_length(Schema& schema, std::string_view key, Length& length, std::string_view meaning)
-{
-    schema.group(key, meaning, [&] {
-        schema.quantity("median", length.median, Dimension::length, sizes, "median");
-        schema.number("spread", length.spread, {0, 3}, "standard deviation of the logarithm");
-        schema.quantity("least", length.least, Dimension::length, {0, 1e-3}, "smaller draws are drawn again");
-        schema.quantity("most", length.most, Dimension::length, sizes, "greater draws are drawn again");
-    });
-}
-
-void check_length(const Length& length, const std::string& where)
-{
-    if (!(length.least <= length.median && length.median <= length.most))
-        throw InvalidInput(fmt::format("synth: {} needs least <= median <= most, got {:g} <= {:g} <= {:g} m", where,
-                                       length.least, length.median, length.most));
-}
-
 }  // namespace
 
 Settings::Settings()
@@ -68,7 +51,7 @@ void describe(Schema& schema, PorePopulation& p)
 {
     schema.text("name", p.name, "name in tables and messages");
     schema.option("shape", p.shape, {"globular", "irregular"}, "one ellipsoid, or flattened lobes grown together");
-    describe_length(schema, "radius", p.radius, "radius of the ball of the same volume; of the main lobe if irregular");
+    describe(schema, "radius", p.radius, "radius of the ball of the same volume; of the main lobe if irregular");
     schema.number("flatness", p.flatness, {0.05, 1}, "shortest over longest semi-axis");
     schema.integer("lobes", p.lobes, {2, 50}, "lobes of an irregular pore");
     schema.quantity("porosity", p.porosity, Dimension::fraction, {0, 0.5},
@@ -84,14 +67,14 @@ void describe(Schema& schema, CrackPopulation& c)
 {
     schema.text("name", c.name, "name in tables and messages");
     schema.option("shape", c.shape, {"disc", "elliptic", "wavy", "bent"}, "outline and mid-surface");
-    describe_length(schema, "radius", c.radius, "radius of the disc of the same area");
+    describe(schema, "radius", c.radius, "radius of the disc of the same area");
     schema.number("elongation", c.elongation, {1, 10}, "longer over shorter axis; not for discs");
     schema.number("waviness", c.waviness, {0, 0.2}, "wavy: height of the waves over the radius");
     schema.number("bend", c.bend, {0, 1}, "bent: radius over radius of curvature");
     schema.quantities("normals", c.normals, Dimension::pure, {0, 1e6}, "shares of cracks with normals about x, y, z");
     schema.number("scatter", c.scatter, {0, 100}, "spread of the normals about their axis; above 10 nearly isotropic");
     schema.option("profile", c.profile, {"lens", "flat"}, "opening: falling to 0 at the rim, or equal all over");
-    describe_length(schema, "aperture", c.aperture, "greatest opening of a crack");
+    describe(schema, "aperture", c.aperture, "greatest opening of a crack");
     schema.number("aperture_growth", c.aperture_growth, {0, 3}, "opening grows as (radius / median radius)^this");
     schema.number("density", c.density, {0, 10}, "sum a^3 / V, met by scaling sizes; 0: number by count or porosity");
     schema.quantity("porosity", c.porosity, Dimension::fraction, {0, 0.5},
@@ -108,8 +91,11 @@ void describe(Schema& schema, Settings& s)
     schema.integers("shape", s.shape, {8, 20000}, "voxels along x, y, z");
     schema.quantity("voxel_size", s.voxel_size, Dimension::length, {1e-10, 1e-2}, "edge of a voxel");
     schema.integer("seed", s.seed, {0, 9e15}, "another seed, another coating of the same statistics");
+    schema.option("generator", s.generator, {"populations", "splats"},
+                  "defects placed at random, or left by splats sprayed one on another");
     schema.items("pores", s.pores, "populations of pores");
     schema.items("cracks", s.cracks, "populations of cracks");
+    schema.group("splats", "the second generator", [&] { describe(schema, s.splats); });
     schema.group("microscope", "faults of the images", [&] { describe(schema, s.microscope); });
 }
 
@@ -120,14 +106,15 @@ void check(const Settings& s)
     const double voxels =
         static_cast<double>(s.shape[0]) * static_cast<double>(s.shape[1]) * static_cast<double>(s.shape[2]);
     if (voxels > 2e10) throw InvalidInput(fmt::format("synth.shape: {:g} voxels are more than 2e10", voxels));
+    check(s.splats);
     for (const auto& p : s.pores) {
-        check_length(p.radius, "radius of " + p.name);
+        check(p.radius, "radius of " + p.name);
         if ((p.porosity > 0.0) + (p.count > 0) != 1)
             throw InvalidInput(fmt::format("synth: {} needs either porosity or count above 0", p.name));
     }
     for (const auto& c : s.cracks) {
-        check_length(c.radius, "radius of " + c.name);
-        check_length(c.aperture, "aperture of " + c.name);
+        check(c.radius, "radius of " + c.name);
+        check(c.aperture, "aperture of " + c.name);
         if ((c.density > 0.0) + (c.count > 0) != 1 && !(c.porosity > 0.0 && c.density == 0.0 && c.count == 0))
             throw InvalidInput(fmt::format(
                 "synth: {} needs density or count or porosity above 0, and not density with count", c.name));

@@ -93,7 +93,7 @@ domain::Discretisation discretise(const Coating& coating, domain::Domain dense, 
     });
     out.bonds = cut_pairs(dense.elements, dense.bonds.i, dense.bonds.j, cutter, R_B, sight);
     out.near = cut_pairs(dense.elements, dense.near.i, dense.near.j, cutter, R_B, sight);
-    out.p_vx = porosity({size, coating.pores, {}}, std::cbrt(size.x * size.y * size.z) / 160.0).pores;
+    out.p_vx = porosity({size, coating.pores, {}}, std::cbrt(size.x * size.y * size.z) / 128.0).pores;
     out.dense = std::move(dense);
     return out;
 }

@@ -9,8 +9,10 @@
 #include "craze/core/schema.hpp"
 #include "craze/images/gray.hpp"
 #include "craze/synth/coating.hpp"
+#include "craze/synth/length.hpp"
 #include "craze/synth/microscope.hpp"
 #include "craze/synth/render.hpp"
+#include "craze/synth/splats.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -18,13 +20,6 @@
 #include <vector>
 
 namespace craze::synth {
-
-/// A distribution of positive lengths: lognormal about `median`, drawn again until within [least, most].
-struct Length {
-    double median = 0.0;             ///< m
-    double spread = 0.0;             ///< standard deviation of the logarithm; 0 = always the median
-    double least = 0.0, most = 1.0;  ///< m
-};
 
 enum class PoreShape { globular, irregular };
 
@@ -67,12 +62,16 @@ struct CrackPopulation {
     double at_pores = 0.0;         ///< share that starts at the wall of a pore
 };
 
+enum class Generator { populations, splats };
+
 struct Settings {
     std::vector<std::int64_t> shape{300, 300, 300};  ///< voxels along x, y, z
     double voxel_size = 23.6e-9;                     ///< m
     std::int64_t seed = 1;
+    Generator generator = Generator::populations;
     std::vector<PorePopulation> pores;    ///< default: those of an air-plasma-sprayed 8YSZ coating
     std::vector<CrackPopulation> cracks;  ///< likewise
+    Splats splats;                        ///< for the other generator
     Microscope microscope;
 
     Settings();
@@ -87,7 +86,7 @@ void check(const Settings& settings);
 /// The box of the settings, m.
 Vec3 box_of(const Settings& settings);
 
-/// Places all populations, pores first. Depends on the settings and their seed only.
+/// Places all populations, pores first, or sprays splats. Depends on the settings and their seed only.
 /// @throws InvalidInput  when a population finds no room, saying which and what to change
 Coating make_coating(const Settings& settings);
 
