@@ -37,9 +37,11 @@ CylinderVoxels voxels_in_cylinder(const Vec3& a, const Vec3& b, double radius,
     const double h = micro.gray.voxel_size, L = norm(b - a);
     const Vec3 t = (b - a) / L;
     Counter count{micro, counted, {}};
+    // Centres on the surface are inside, whichever way they round.
+    const double slack = 1e-9 * (L + radius), reach2 = (radius + slack) * (radius + slack);
     const auto inside = [&](const Vec3& from_a) {
         const double along = dot(from_a, t);
-        return along >= 0.0 && along <= L && dot(from_a, from_a) - along * along <= radius * radius;
+        return along >= -slack && along <= L + slack && dot(from_a, from_a) - along * along <= reach2;
     };
     // Bounds of the cylinder along y and z: its ends are discs of half width R sqrt(1 - t^2).
     std::int64_t first[3], last[3];

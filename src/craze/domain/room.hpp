@@ -1,0 +1,75 @@
+// Which elements and bonds stand for the matter? The door of the room [3.1 - 3.4].
+
+#pragma once
+
+#include "craze/core/json_fwd.hpp"
+#include "craze/core/schema.hpp"
+#include "craze/domain/discretisation.hpp"
+#include "craze/domain/packing.hpp"
+#include "craze/domain/pairs.hpp"
+#include "craze/domain/thickness.hpp"
+#include "craze/mesh/crack_surface.hpp"
+#include "craze/microstructure/microstructure.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace craze::domain {
+
+/// How the paper's "dispersion of 25 %" is read [3.1.1].
+enum class DispersionMeans {
+    /// Radii within 12.5 % of the mean: the default. Packed to the paper's 92 000 elements the spheres then just touch
+    /// (overlaps 0.3 %), touching pairs alone give the paper's cardinality, and Table 2 gives Table 1's modulus.
+    total_width,
+    /// Radii within 25 % of the mean. The same number of elements is then squeezed: overlaps 1 %, seven contacts each.
+    each_side,
+};
+
+enum class CutBy { surface, voxels };
+
+/// Section [domain].
+struct Settings {
+    std::optional<double> mean_radius;  ///< R_DE, m; none: R_C [Eq. 11]
+    double dispersion = 0.25;
+    DispersionMeans dispersion_means = DispersionMeans::total_width;
+    double density = 0.0;  ///< elements per R_DE^3; 0: the paper's
+    double cardinality = 6.2;
+    double near_gap = 0.3;  ///< R_DE
+    bool periodic = false;
+    std::int64_t seed = 1;
+
+    CutBy cut_by = CutBy::surface;
+    CountedVoid counted = CountedVoid::crack;
+    double r_tilde = 0.345;  ///< R_B / R_DE of the cylinders in which cracks are measured [Eq. 3]
+};
+
+void describe(Schema& schema, Settings& settings);
+/// @throws InvalidInput  naming the key; also when a file to import is not there
+void check(const Settings& settings);
+
+/// What makes two dense domains the same material whatever their box: for calibrations on a smaller one.
+/// @param mean_radius  R_DE, m
+Recipe recipe(const Settings& settings, double mean_radius);
+
+/// A dense, bonded domain of the settings' recipe in a box of edges `box` (m).
+Domain pack(const Vec3& box, double mean_radius, const Settings& settings);
+
+/// The dense domain in the box of the stack, and which of its elements and bonds the defects take.
+/// @param R_C  closing radius of the microstructure, px: R_DE = R_C unless the settings say otherwise [Eq. 11]
+Discretisation discretise(const microstructure::Microstructure& micro, const mesh::CrackSurface& surface, double R_C,
+                          const Settings& settings);
+/// The same for a dense domain made elsewhere.
+Discretisation discretise(Domain dense, const microstructure::Microstructure& micro, const mesh::CrackSurface& surface,
+                          const Settings& settings);
+
+/// Writes domain.vtkhdf (dense, with what the defects take) and the formats asked for into `folder`.
+void save(const Discretisation& discretisation, const Settings& settings, const std::filesystem::path& folder);
+/// @throws InvalidInput  when domain.vtkhdf is missing or damaged
+Discretisation load_discretisation(const std::filesystem::path& folder);
+
+/// What summary.json says; keys in docs/results.md.
+Json summary(const Discretisation& discretisation);
+
+}  // namespace craze::domain
