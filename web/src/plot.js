@@ -23,8 +23,8 @@ function ascending(series) {
   return { x: order.map((i) => x[i]), y: order.map((i) => y[i]) };
 }
 
-function lookOf(series) {
-  const look = { label: series.name || "value", stroke: series.colour, width: 2, points: { show: false }, spanGaps: false };
+function lookOf(series, title) {
+  const look = { label: series.name || title, stroke: series.colour, width: 2, points: { show: false }, spanGaps: false };
   if (series.mark === "dashed") look.dash = [8, 5];
   if (series.mark === "bars") Object.assign(look, { paths: uPlot.paths.stepped({ align: 1 }), fill: series.colour + "55", width: 1 });
   if (series.mark === "points") Object.assign(look, { paths: () => null, points: { show: true, size: 7, fill: series.colour, width: 0 } });
@@ -43,7 +43,7 @@ function guidePlugin(guides, ink) {
         ctx.setLineDash([2 * scale, 3 * scale]);
         ctx.font = `${12 * scale}px system-ui, sans-serif`;
         let row = 15 * scale;
-        for (const guide of guides) {
+        for (const guide of [...guides].sort((a, b) => a.at - b.at)) {
           const at = Math.round(u.valToPos(guide.at, guide.upright ? "x" : "y", true));
           ctx.beginPath();
           if (guide.upright) {
@@ -86,7 +86,7 @@ function addStyle() {
   if (styled) return;
   styled = true;
   const style = document.createElement("style");
-  style.textContent = plotStyle + ".u-legend{font-size:.84rem;text-align:left}.u-wrap{background:var(--paper)}";
+  style.textContent = plotStyle + ".u-legend{font-size:.84rem;text-align:left}.u-wrap{background:var(--paper)}.u-legend [hidden]{display:none}";
   document.head.append(style);
 }
 
@@ -114,7 +114,7 @@ export function drawPlot(figure, data) {
       {
         width: stage.clientWidth, height, scales: { x: scale(data.x, true), y: scale(data.y, false) },
         axes: [axis(data.x, 46), axis(data.y, 62)],
-        series: [{ label: data.x.title, value: (_, v) => (v == null ? "–" : String(Number(v.toPrecision(5)))) }, ...data.series.map(lookOf)],
+        series: [{ label: data.x.title, value: (_, v) => (v == null ? "–" : String(Number(v.toPrecision(5)))) }, ...data.series.map((s) => lookOf(s, data.y.title))],
         plugins: [guidePlugin(data.guides, soft)],
         cursor: { drag: { x: true, y: false }, focus: { prox: 30 } },
         legend: { live: true },
@@ -122,7 +122,10 @@ export function drawPlot(figure, data) {
       uPlot.join(parts.map((p) => [p.x, p.y])),
       stage,
     );
-    figure.plot = plot;
+    // A second line of the same thing (a tangent) needs no line of its own in the legend.
+    data.series.forEach((s, k) => {
+      if (!s.name && data.series.length > 1) plot.root.querySelectorAll(".u-legend .u-series")[k + 1].hidden = true;
+    });
   };
   build();
   new ResizeObserver(() => stage.clientWidth && plot.setSize({ width: stage.clientWidth, height })).observe(stage);

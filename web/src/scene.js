@@ -133,8 +133,8 @@ export async function showScene(figure, data) {
     scene.background = new Color(dark.matches ? 0x14171a : 0xffffff);
   };
   ground();
-  scene.add(new AmbientLight(0xffffff, 1.35));
-  const light = new DirectionalLight(0xffffff, 2.1);
+  scene.add(new AmbientLight(0xffffff, 0.75));
+  const light = new DirectionalLight(0xffffff, 2.6);
   scene.add(light);
 
   const box = new Vector3(...data.box), centre = box.clone().multiplyScalar(0.5), reach = box.length();
@@ -153,7 +153,7 @@ export async function showScene(figure, data) {
     queued = true;
     requestAnimationFrame(() => {
       queued = false;
-      light.position.copy(camera.position).sub(centre).add(new Vector3(0, 0, reach * 0.8)).add(centre);
+      light.position.copy(new Vector3(-0.9, 1.1, 1.6).applyQuaternion(camera.quaternion).multiplyScalar(reach)).add(centre);
       light.target.position.copy(centre);
       light.target.updateMatrixWorld();
       renderer.render(scene, camera);

@@ -1,13 +1,15 @@
 // What the virtual tests say: moduli, stress and strain, pressure and density, strength [4, Figs. 18 to 25].
 
 #include "craze/core/json.hpp"
+#include "craze/loading/loading.hpp"
+#include "craze/loading/specimen.hpp"
 #include "craze/report/sections.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <utility>
 
 namespace craze::report {
 
@@ -15,43 +17,55 @@ namespace {
 
 constexpr double giga = 1e9, mega = 1e6, percent = 0.01;
 
-enum class Kind { modulus, uniaxial, triaxial, fracture, cycles, program };
+using loading::Point;
+using Kind = loading::Loading::Kind;
 
-/// One curve of response.json.
+/// A measured curve with what plots ask of it.
 struct Curve {
-    const Json& json;
+    const loading::Curve& measured;
     Kind kind;
-    std::string name, specimen;
-    int axis = 0;
+    std::string specimen;
+    int axis;
+    bool tension;
 
-    double strength() const { return find_number(json, {"loading.strength"}); }
-    bool tension() const { return name.find("compression") == std::string::npos; }
-    /// A quantity along the curve, over `unit`.
-    std::vector<double> along(std::string_view key, double unit) const
+    explicit Curve(const loading::Curve& curve)
+        : measured(curve),
+          kind(curve.loading.kind),
+          specimen(loading::specimen_name(curve.loading.specimen)),
+          axis(std::clamp(curve.loading.axis, 0, 2)),
+          tension(curve.loading.path.empty() || curve.loading.path.front() >= 0.0)
+    {
+    }
+    template <class Value>
+    std::vector<double> along(Value value, double unit) const
     {
         std::vector<double> out;
-        for (const Json& point : json.at("points")) out.push_back(find_number(point, {key}) / unit);
+        for (const Point& p : measured.points) out.push_back(value(p) / unit);
         return out;
     }
-    std::vector<double> strain() const { return along(fmt::format("strain.{}", "xyz"[axis]), percent); }
-    std::vector<double> stress() const { return along(fmt::format("stress.{}", "xyz"[axis]), mega); }
+    std::vector<double> along(double Point::*member, double unit) const
+    {
+        return along([member](const Point& p) { return p.*member; }, unit);
+    }
+    std::vector<double> strain() const
+    {
+        return along([this](const Point& p) { return p.strain[axis]; }, percent);
+    }
+    std::vector<double> stress() const
+    {
+        return along([this](const Point& p) { return p.stress[axis]; }, mega);
+    }
 };
 
-std::vector<Curve> curves_of(const Json& response)
+/// The same specimen has the same colour in every plot.
+int colour_of_specimen(const std::string& name)
 {
-    std::vector<Curve> out;
-    for (const Json& c : find(response, "curves")) {
-        const auto name = find(c, "loading.name").get<std::string>();
-        out.push_back({c, static_cast<Kind>(find(c, "loading.kind").get<int>()), name, name.substr(0, name.find(',')),
-                       std::clamp(static_cast<int>(find_number(c, {"loading.axis"})), 0, 2)});
-    }
-    return out;
+    return name == "dense" ? 6 : name == "pores" ? 0 : name == "cracks" ? 1 : name == "both" ? 2 : -1;
 }
 
-void moduli_table(Work& work, const Json& response)
+void moduli_table(Work& work, const std::vector<loading::Modulus>& moduli)
 {
-    const Json& moduli = find(response, "moduli");
-    if (!moduli.is_array() || moduli.empty()) return;
+    if (moduli.empty()) return;
     // Table 3 of the paper, GPa.
     struct Row {
         std::string_view specimen;
@@ -60,26 +74,24 @@ void moduli_table(Work& work, const Json& response)
     constexpr Row paper[] = {
         {"both", 89, 74, 115}, {"cracks", 135, 111, 159}, {"pores", 186, 184, 190}, {"dense", 223, 223, 223}};
     std::vector<std::string> specimens;
-    for (const Json& m : moduli)
-        if (const auto name = m.value("specimen", std::string());
-            std::find(specimens.begin(), specimens.end(), name) == specimens.end())
-            specimens.push_back(name);
-    Table table{{"specimen", "E<sub>x</sub> [GPa]", "E<sub>y</sub>", "E<sub>z</sub>", "E<sub>z</sub>, compression",
-                 "ν along z"},
+    for (const auto& m : moduli)
+        if (std::find(specimens.begin(), specimens.end(), m.specimen) == specimens.end())
+            specimens.push_back(m.specimen);
+    Table table{{"specimen", "E<sub>x</sub> [GPa]", "E<sub>y</sub>", "E<sub>z</sub>", "compression: E<sub>x</sub>",
+                 "E<sub>y</sub>", "E<sub>z</sub>", "ν along z"},
                 {},
                 ""};
     if (work.paper) table.head.emplace_back("paper: E<sub>Tx</sub>, E<sub>Ty</sub>, E<sub>L</sub> [GPa]");
     for (const auto& specimen : specimens) {
-        const auto value = [&](int axis, std::string_view key) {
-            for (const Json& m : moduli)
-                if (m.value("specimen", std::string()) == specimen && m.value("axis", -1) == axis)
-                    return find_number(m, {key});
+        const auto value = [&](int axis, double loading::Modulus::*member) {
+            for (const auto& m : moduli)
+                if (m.specimen == specimen && m.axis == axis) return m.*member;
             return std::nan("");
         };
         std::vector<std::string> row{escape(specimen)};
-        for (int axis = 0; axis < 3; ++axis) row.push_back(cell(value(axis, "tension"), giga));
-        row.push_back(cell(value(2, "compression"), giga));
-        row.push_back(cell(value(2, "nu"), 1.0, 3));
+        for (const auto sense : {&loading::Modulus::tension, &loading::Modulus::compression})
+            for (int axis = 0; axis < 3; ++axis) row.push_back(cell(value(axis, sense), giga));
+        row.push_back(cell(value(2, &loading::Modulus::nu), 1.0, 3));
         if (work.paper) {
             const auto* known =
                 std::find_if(std::begin(paper), std::end(paper), [&](const Row& r) { return r.specimen == specimen; });
@@ -134,41 +146,78 @@ void stress_strain(Work& work, const std::vector<Curve>& curves)
 void triaxial(Work& work, const std::vector<Curve>& curves)
 {
     struct Plot {
-        const char *id, *key, *title, *caption, *paper;
+        const char *id, *title, *caption, *paper;
+        double Point::*member;
         double unit;
     };
     constexpr Plot plots[] = {
-        {"pressure_density", "pressure", "pressure P [MPa]", "Triaxial compression: pressure against density.",
-         "Figs. 21a, 22a", mega},
-        {"bulk_modulus", "bulk_modulus", "tangent bulk modulus K [GPa]",
-         "Triaxial compression: tangent bulk modulus K = (1 + η) dP/dη.", "Figs. 21b, 22b", giga},
-        {"crack_closure", "closure", "closed contact beams γ [%]",
-         "Triaxial compression: share of contact beams under compression.", "Figs. 21c, 22c", percent}};
+        {"pressure_density", "pressure P [MPa]", "Triaxial compression: pressure against density.", "Figs. 21a, 22a",
+         &Point::pressure, mega},
+        {"bulk_modulus", "tangent bulk modulus K [GPa]",
+         "Triaxial compression: tangent bulk modulus K = (1 + η) dP/dη.", "Figs. 21b, 22b", &Point::bulk, giga},
+        {"crack_closure", "closed contact beams γ [%]",
+         "Triaxial compression: share of contact beams under compression.", "Figs. 21c, 22c", &Point::closure,
+         percent}};
     for (const auto& p : plots) {
         Figure f;
         f.id = p.id, f.caption = p.caption, f.paper = work.figure(p.paper);
         f.x.title = "density η = (V₀ − V)/V [%]";
-        f.y.title = p.title;
+        f.y = {p.title, false, 0.0};
+        bool both = false;
         for (const auto& c : curves) {
-            if (c.kind != Kind::triaxial) continue;
-            const auto gamma = c.along("closure", 1.0);
-            if (std::string_view(p.id) == "crack_closure" && *std::max_element(gamma.begin(), gamma.end()) <= 0.0)
-                continue;
-            f.series.push_back({c.specimen, c.along("eta", percent), c.along(p.key, p.unit)});
+            if (c.kind != Kind::triaxial || c.measured.points.empty()) continue;
+            if (p.member == &Point::closure && c.measured.points.back().cracked <= 0.0) continue;
+            f.series.push_back({c.specimen, c.along(&Point::eta, percent), c.along(p.member, p.unit), Mark::line,
+                                colour_of_specimen(c.specimen)});
+            both = both || c.specimen == "both";
         }
-        if (work.paper && std::string_view(p.id) == "bulk_modulus" && !f.series.empty())
-            f.guides = {{52.0, "paper, both, η = 0: 52 GPa", false}, {70.0, "paper, both, η = 1.5 %: 70 GPa", false}};
+        if (work.paper && both && p.member == &Point::bulk)
+            f.series.push_back({"paper, both", {0.0, 1.5}, {52.0, 70.0}, Mark::points, 2});
         work.page.figure(f);
     }
 }
 
 std::string bond_strength(const Curve& c)
 {
-    const double s = c.strength();
+    const double s = c.measured.loading.strength;
     return std::isfinite(s) ? fmt::format("{} GPa", format_number(s / giga, 3)) : std::string("unbreakable");
 }
 
-void fracture(Work& work, const Json& response, const std::vector<Curve>& curves)
+void strength_table(Work& work, const std::vector<loading::Strength>& strengths)
+{
+    if (strengths.empty()) return;
+    Table table{{"specimen", "load", "bond strength [GPa]", "strength [MPa]", "at strain [%]", "new contact beams [%]"},
+                {},
+                ""};
+    if (work.paper) table.head.emplace_back("paper [MPa]");
+    // Table 4 of the paper: loading along x.
+    constexpr double sigma[] = {10, 20, 30, 40, 50}, uts[] = {61, 120, 179, 243, 308},
+                     ucs[] = {171, 345, 540, 753, 1002};
+    for (const auto& s : strengths) {
+        const double bond = s.sigma_failure / giga;
+        std::vector<std::string> row{
+            escape(s.specimen),         fmt::format("{} {}", s.tension ? "tension" : "compression", "xyz"[s.axis]),
+            cell(bond, 1.0, 3),         cell(s.strength, mega, 4),
+            cell(s.strain, percent, 3), cell(s.new_cracks, percent, 3)};
+        if (work.paper) {
+            const auto* at =
+                std::find_if(std::begin(sigma), std::end(sigma), [&](double v) { return std::abs(v - bond) < 1e-6; });
+            const bool known = at != std::end(sigma) && s.axis == 0;
+            row.push_back(known ? format_number((s.tension ? uts : ucs)[at - sigma], 4) : std::string());
+        }
+        table.rows.push_back(std::move(row));
+    }
+    work.page.subtitle("Strength");
+    work.page.add(html(table));
+}
+
+std::vector<double> absolute(std::vector<double> values)
+{
+    for (double& v : values) v = std::abs(v);
+    return values;
+}
+
+void fracture(Work& work, const std::vector<Curve>& curves)
 {
     Figure stress, damage, cycles;
     stress.id = "fracture_stress";
@@ -179,63 +228,52 @@ void fracture(Work& work, const Json& response, const std::vector<Curve>& curves
     damage.caption = "Fracture: share α of the bonds that are contact beams, less that at the start.";
     damage.paper = work.figure("Fig. 23b");
     damage.y.title = "new contact beams [%]";
+    stress.x.title = damage.x.title = "|axial strain| [%]";
     cycles.id = "cycles";
     cycles.caption = "Cycles of loading and unloading.";
     cycles.paper = work.figure("Fig. 25");
     cycles.x.title = "axial strain [%]";
     cycles.y.title = "axial stress [MPa]";
-    stress.x.title = damage.x.title = "|axial strain| [%]";
-    const auto absolute = [](std::vector<double> v) {
-        for (double& x : v) x = std::abs(x);
-        return v;
-    };
     for (const auto& c : curves) {
+        if (c.measured.points.empty()) continue;
         if (c.kind == Kind::cycles)
             cycles.series.push_back({fmt::format("{}, {}", c.specimen, bond_strength(c)), c.strain(), c.stress()});
         if (c.kind != Kind::fracture) continue;
-        const auto name =
-            fmt::format("{}, {}, {}", c.specimen, c.tension() ? "tension" : "compression", bond_strength(c));
-        auto alpha = c.along("cracked", percent);
-        for (double& a : alpha) a -= find_number(c.json.at("points").front(), {"cracked"}) / percent;
-        stress.series.push_back(
-            {name, absolute(c.strain()), absolute(c.stress()), c.tension() ? Mark::line : Mark::dashed});
-        damage.series.push_back({name, absolute(c.strain()), alpha, c.tension() ? Mark::line : Mark::dashed});
+        const auto name = fmt::format("{}, {} {}, {}", c.specimen, c.tension ? "tension" : "compression", "xyz"[c.axis],
+                                      bond_strength(c));
+        auto alpha = c.along(&Point::cracked, percent);
+        const double before = alpha.front();
+        for (double& a : alpha) a -= before;
+        const Mark mark = c.tension ? Mark::line : Mark::dashed;
+        stress.series.push_back({name, absolute(c.strain()), absolute(c.stress()), mark});
+        damage.series.push_back({name, absolute(c.strain()), alpha, mark});
     }
-    const Json& strengths = find(response, "strengths");
-    if (strengths.is_array() && !strengths.empty()) {
-        Table table{
-            {"specimen", "load", "bond strength [GPa]", "strength [MPa]", "at strain [%]", "new contact beams [%]"},
-            {},
-            ""};
-        if (work.paper) table.head.emplace_back("paper [MPa]");
-        constexpr double sigma[] = {10, 20, 30, 40, 50}, uts[] = {61, 120, 179, 243, 308},
-                         ucs[] = {171, 345, 540, 753, 1002};
-        for (const Json& s : strengths) {
-            const bool tension = s.value("tension", true);
-            const double bond = find_number(s, {"sigma_failure"}) / giga;
-            std::vector<std::string> row{
-                escape(s.value("specimen", std::string("?"))),
-                fmt::format("{} {}", tension ? "tension" : "compression", "xyz"[s.value("axis", 0)]),
-                cell(bond, 1.0, 3),
-                cell(find_number(s, {"strength"}), mega, 4),
-                cell(find_number(s, {"strain"}), percent, 3),
-                cell(find_number(s, {"new_cracks"}), percent, 3)};
-            if (work.paper) {
-                const auto* at = std::find_if(std::begin(sigma), std::end(sigma),
-                                              [&](double v) { return std::abs(v - bond) < 1e-6; });
-                const bool known = at != std::end(sigma) && s.value("axis", -1) == 0;
-                row.push_back(known ? format_number((tension ? uts : ucs)[at - sigma], 4) : std::string());
-            }
-            table.rows.push_back(std::move(row));
-        }
-        work.page.subtitle("Strength");
-        work.page.add(html(table));
-    }
-    work.page.add("<div class=\"row\">");
     work.page.figure(stress);
     work.page.figure(damage);
     work.page.figure(cycles);
-    work.page.add("</div>");
+}
+
+void energies(Work& work, const std::vector<Curve>& curves)
+{
+    const auto first = std::find_if(curves.begin(), curves.end(), [](const Curve& c) {
+        return c.kind == Kind::fracture && !c.measured.broken.empty();
+    });
+    if (first == curves.end()) return;
+    Figure f;
+    f.id = "energies";
+    f.caption = fmt::format("Energies of the loading \"{}\": the work of the sides against where it went.",
+                            first->measured.loading.name);
+    f.x.title = "|axial strain| [%]";
+    f.y.title = "energy [nJ]";
+    constexpr std::pair<double Point::*, const char*> parts[] = {{&Point::work, "work of the sides"},
+                                                                 {&Point::elastic, "elastic"},
+                                                                 {&Point::kinetic, "kinetic"},
+                                                                 {&Point::damped, "damped"},
+                                                                 {&Point::fracture, "fracture"}};
+    for (const auto& [member, name] : parts)
+        f.series.push_back({name, absolute(first->strain()), first->along(member, 1e-9),
+                            member == &Point::work ? Mark::dashed : Mark::line});
+    work.page.figure(f);
 }
 
 void programs(Work& work, const std::vector<Curve>& curves)
@@ -245,51 +283,31 @@ void programs(Work& work, const std::vector<Curve>& curves)
         if (c.kind != Kind::program) continue;
         Figure f;
         f.id = fmt::format("program_{}", ++number);
-        f.caption = fmt::format("Loading \"{}\": stress along each axis.", c.name);
+        f.caption = fmt::format("Loading \"{}\": stress along each axis.", c.measured.loading.name);
         f.x.title = "strain of the program [%]";
         f.y.title = "stress [MPa]";
-        for (const char axis : {'x', 'y', 'z'})
-            f.series.push_back(
-                {std::string("σ") + axis, c.along("program", percent), c.along(std::string("stress.") + axis, mega)});
+        for (int axis = 0; axis < 3; ++axis)
+            f.series.push_back({fmt::format("σ{0}{0}", "xyz"[axis]), c.along(&Point::program, percent),
+                                c.along([axis](const Point& p) { return p.stress[axis]; }, mega)});
         work.page.figure(f);
     }
 }
 
-void calibration(Work& work, const Json& response)
+void calibration(Work& work, const loading::Calibration& c)
 {
-    const Json& path = find(response, "calibration.path");
-    if (!path.is_array() || path.size() < 2) return;
-    Table table{{"trial", "r̃", "E along z [GPa]", "ν along z"}, {}, ""};
+    if (c.path.size() < 2) return;
+    Table table{{"trial", "r̃", "E along x, y, z [GPa]", "ν along x, y, z"}, {}, ""};
+    const auto three = [](const Vec3& v, double unit, int digits) {
+        std::string out;
+        for (int axis = 0; axis < 3; ++axis)
+            if (v[axis] != 0.0) out += (out.empty() ? "" : ", ") + cell(v[axis], unit, digits);
+        return out;
+    };
     int trial = 0;
-    for (const Json& t : path)
-        table.rows.push_back({fmt::format("{}", ++trial), cell(find_number(t, {"r_tilde"}), 1.0, 6),
-                              cell(find_number(t, {"E.z"}), giga, 5), cell(find_number(t, {"nu.z"}), 1.0, 5)});
+    for (const auto& t : c.path)
+        table.rows.push_back(
+            {fmt::format("{}", ++trial), cell(t.r_tilde, 1.0, 6), three(t.E, giga, 5), three(t.nu, 1.0, 4)});
     work.page.folded("The trials of the calibration", html(table));
-}
-
-void energies(Work& work, const std::vector<Curve>& curves)
-{
-    for (const auto& c : curves) {
-        if (c.kind != Kind::fracture) continue;
-        const auto broken = c.along("broken", 1.0);
-        if (broken.empty() || broken.back() <= 0.0) continue;
-        Figure f;
-        f.id = "energies";
-        f.caption = fmt::format("Energies of the loading \"{}\": the work of the sides against where it went.", c.name);
-        f.x.title = "|axial strain| [%]";
-        f.y.title = "energy [nJ]";
-        auto x = c.strain();
-        for (double& v : x) v = std::abs(v);
-        for (const auto& [key, name] : {std::pair{"work", "work of the sides"},
-                                        {"elastic", "elastic"},
-                                        {"kinetic", "kinetic"},
-                                        {"damped", "damped"},
-                                        {"fracture", "fracture"}})
-            f.series.push_back(
-                {name, x, c.along(key, 1e-9), key == std::string_view("work") ? Mark::dashed : Mark::line});
-        work.page.figure(f);
-        return;
-    }
 }
 
 }  // namespace
@@ -297,17 +315,18 @@ void energies(Work& work, const std::vector<Curve>& curves)
 void write_loading(Work& work)
 {
     if (!begin_room(work, "loading", "Virtual tests")) return;
-    const Json response = read_json(work.folder.room("loading") / "response.json");
-    const auto curves = curves_of(response);
-    moduli_table(work, response);
+    const auto response = loading::load_response(work.folder.room("loading"));
+    const std::vector<Curve> curves(response.curves.begin(), response.curves.end());
+    moduli_table(work, response.moduli);
+    strength_table(work, response.strengths);
     work.page.add("<div class=\"row\">");
     stress_strain(work, curves);
     triaxial(work, curves);
+    fracture(work, curves);
+    energies(work, curves);
     programs(work, curves);
     work.page.add("</div>");
-    fracture(work, response, curves);
-    energies(work, curves);
-    calibration(work, response);
+    calibration(work, response.calibration);
     end_room(work, "loading");
 }
 

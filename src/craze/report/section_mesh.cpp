@@ -90,7 +90,7 @@ Figure inclination(const std::vector<Facet>& facets)
 /// Directions of the lines along which cracks cut a plane across `axis`, weighted by their length.
 Rose trace_rose(const std::vector<Facet>& facets, int axis)
 {
-    constexpr std::size_t petals = 36;
+    constexpr std::size_t petals = 18;
     const int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
     Rose rose;
     rose.id = fmt::format("crack_rose_{}", "xyz"[axis]);
@@ -103,7 +103,8 @@ Rose trace_rose(const std::vector<Facet>& facets, int axis)
         if (!(length > 0.0)) continue;
         double angle = std::atan2(f.normal[u], -f.normal[v]);  // of the trace, which is normal to the normal
         if (angle < 0.0) angle += std::numbers::pi;
-        const auto petal = static_cast<std::size_t>(angle / std::numbers::pi * static_cast<double>(petals)) % petals;
+        const auto petal =
+            static_cast<std::size_t>(std::lround(angle / std::numbers::pi * static_cast<double>(petals))) % petals;
         rose.share[petal] += f.area * length;
     }
     return rose;

@@ -186,7 +186,9 @@ std::string svg(const Figure& figure)
     }
     out += "</g>\n";
     double label_y = top + 15.0;
-    for (const auto& g : figure.guides) {
+    auto guides = figure.guides;
+    std::stable_sort(guides.begin(), guides.end(), [](const Guide& a, const Guide& b) { return a.at < b.at; });
+    for (const auto& g : guides) {
         const double p = g.upright ? x(g.at) : y(g.at);
         if (!std::isfinite(p)) continue;
         if (g.upright) {
@@ -230,7 +232,7 @@ std::string svg(const Rose& rose)
     const auto turns = static_cast<std::size_t>(std::lround(360.0 / rose.span_degrees));
     std::string path;
     for (std::size_t k = 0; most > 0.0 && k < petals * turns; ++k) {
-        const double r = reach * std::sqrt(rose.share[k % petals] / most), a = static_cast<double>(k) * step,
+        const double r = reach * std::sqrt(rose.share[k % petals] / most), a = (static_cast<double>(k) - 0.5) * step,
                      b = a + step;
         path += fmt::format("M{0} {0}L{1:.2f} {2:.2f}A{3:.2f} {3:.2f} 0 0 0 {4:.2f} {5:.2f}Z", centre,
                             centre + r * std::cos(a), centre - r * std::sin(a), r, centre + r * std::cos(b),

@@ -94,7 +94,7 @@ TEST(RoseSvg, PetalAreasAreTheShares)
     EXPECT_NE(drawing.find("A66.00 66.00"), std::string::npos)
         << "half the radius of the petal with four times the share";
     EXPECT_NE(drawing.find("A132.00 132.00"), std::string::npos);
-    EXPECT_EQ(csv(rose), "direction [degree],share [%]\n45,20\n135,80\n");
+    EXPECT_EQ(csv(rose), "direction [degree],share [%]\n0,20\n90,80\n");
 }
 
 TEST(ParseCsv, TakesQuotesCommentsShortLinesAndForeignLineEnds)
