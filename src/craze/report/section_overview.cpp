@@ -117,13 +117,12 @@ void write_overview(Work& work)
               truth("true_porosity.cracks"), 2.95, 3);
     table.row("threshold S [gray level]", measured("threshold.used"), 1.0, Origin::measured);
     const auto discrete = [&](std::initializer_list<std::string_view> keys) { return find_number(domain, keys); };
-    table.row("discrete porosity p<sub>DE</sub> [%]", discrete({"p_DE", "discrete_porosity"}), percent,
-              Origin::measured, none, 5.82, 3);
+    table.row("discrete porosity p<sub>DE</sub> [%]", discrete({"p_DE"}), percent, Origin::measured, none, 5.82, 3);
     table.row("elements", discrete({"elements"}), 1.0, Origin::measured, none, 92000, 9);
     table.row("bonds", discrete({"bonds"}), 1.0, Origin::measured, none, 278000, 9);
-    table.row("contact beams (cut bonds)", discrete({"contact_beams"}), 1.0, Origin::measured, none, none, 9);
-    table.row("crack thickness T<sub>2</sub>, median [nm]",
-              discrete({"T2.median_m", "T2.median", "T2_m.median", "T2_median_m"}), nano, Origin::measured, none, 37,
+    table.row("contact beams (cut bonds)", discrete({"specimen.contact_beams", "contact_beams"}), 1.0, Origin::measured,
+              none, none, 9);
+    table.row("crack thickness T<sub>2</sub>, median [nm]", discrete({"T2_m.median"}), nano, Origin::measured, none, 37,
               3);
     loading_rows(table, folder.summary("loading"));
     if (table.empty())
