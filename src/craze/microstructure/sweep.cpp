@@ -18,8 +18,8 @@ namespace craze::microstructure {
 
 namespace {
 
-constexpr double elongated = 4.0;    // longest semi-axis over inscribed radius
-constexpr double shell_depth = 3.0;  // px
+constexpr double elongated = 4.0;     // longest semi-axis over inscribed radius
+constexpr double shell_depth = 0.75;  // of R_C: a ball of R_C stays (sqrt 3 - 1) R_C short of the corner of a cube
 
 double share(std::int64_t part, std::int64_t whole)
 {
@@ -36,9 +36,9 @@ double thin_share(const Mask& pores, const Volume<std::int32_t>& squared)
     return share(thin, all);
 }
 
-double shell_share(const Mask& pore, const Mask& crack, const Components& cracks)
+double shell_share(const Mask& closed_pores, double R_C, const Mask& crack, const Components& cracks)
 {
-    const Mask far = difference(crack, dilated(pore, Ball(shell_depth)));
+    const Mask far = difference(crack, dilated(closed_pores, Ball(shell_depth * R_C)));
     std::vector<std::uint8_t> shell(static_cast<std::size_t>(cracks.count), 1);
     const Shape& s = crack.shape();
     for (std::int64_t r = 0; r < s.ny * s.nz; ++r) {
@@ -66,7 +66,7 @@ SweepRow tried(const Mask& matter, double R_C, double R_E, Border border, const 
     const Components cracks = components(c.crack);
     SweepRow row{R_C, R_E, {porosity(c.pore), porosity(c.crack)}, components(c.pore).count, cracks.count};
     if (squared != nullptr) row.thin_share = thin_share(c.closed, *squared);
-    row.shell_share = shell_share(c.pore, c.crack, cracks);
+    row.shell_share = shell_share(c.closed, R_C, c.crack, cracks);
     return row;
 }
 

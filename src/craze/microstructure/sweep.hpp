@@ -22,7 +22,8 @@ struct SweepRow {
     std::int64_t pores = 0, cracks = 0;  ///< 26-connected objects
     /// Share of the closed pores (img. 1a) in objects whose longest semi-axis exceeds 4 times their inscribed radius.
     double thin_share = 0.0;
-    /// Share of the cracks in objects that lie within 3 px of pores as a whole.
+    /// Share of the cracks in objects that as a whole lie within 0.75 R_C of the closed pores: what a ball cannot reach
+    /// at edges and corners of a pore ends nearer than that.
     double shell_share = 0.0;
 };
 

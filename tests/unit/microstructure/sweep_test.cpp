@@ -72,9 +72,10 @@ TEST(Sweep, ProposesTheSmallestErosionThatLeavesNoShells)
     settings.sweep.step = 2.0;
     const Sweep sweep = swept(matter, settings);
     EXPECT_EQ(sweep.R_C, 8.5);
-    EXPECT_EQ(sweep.R_E, 4.5);
+    EXPECT_EQ(sweep.R_E, 6.5);
     EXPECT_GT(sweep.erosion[1].shell_share, 1e-3);  // 2.5 px: edges are left
-    EXPECT_EQ(sweep.erosion[4].shell_share, 0.0);   // 8.5 px: not even corners
+    EXPECT_GT(sweep.erosion[2].shell_share, 5e-4);  // 4.5 px: corners
+    EXPECT_EQ(sweep.erosion[3].shell_share, 0.0);
 }
 
 TEST(Sweep, WritesTablesAndPictures)
