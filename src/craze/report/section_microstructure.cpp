@@ -1,12 +1,14 @@
 // Pores and cracks: thresholds, porosities, sizes [2.4, 2.6, Figs. 4, 6, 7].
 
 #include "craze/core/json.hpp"
+#include "craze/io/atomic_file.hpp"
 #include "craze/report/sections.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <numeric>
+#include <tuple>
 
 namespace craze::report {
 
@@ -117,6 +119,32 @@ void local_thickness(Work& work)
     work.page.figure(f);
 }
 
+/// What the sweep of R_C and R_E measured [2.4.3], where one was asked for.
+void sweeps(Work& work, const Json& summary)
+{
+    for (const auto& [file, id, radius, measure, caption] :
+         {std::tuple{"sweep_R_C.csv", "sweep_R_C", "R_C_px", "thin_share",
+                     "Closing radius tried with R_E = R_C: void classified as pore though thin, and porosities."},
+          {"sweep_R_E.csv", "sweep_R_E", "R_E_px", "shell_share",
+           "Erosion radius tried at the chosen R_C: crack voxels that are shells around pores, and porosities."}}) {
+        const auto csv = work.folder.csv("microstructure", file);
+        if (!csv) continue;
+        Figure f;
+        f.id = id;
+        f.caption = caption;
+        f.x.title = radius == std::string_view("R_C_px") ? "R_C = R_E [px]" : "R_E [px]";
+        f.y = {"share [%]", false, 0.0};
+        const auto at = csv->numbers(radius);
+        f.series = {{measure == std::string_view("thin_share") ? "thin objects among pores" : "shells among cracks", at,
+                     over(csv->numbers(measure), percent)},
+                    {"porosity, pores", at, over(csv->numbers("porosity_pores"), percent)},
+                    {"porosity, cracks", at, over(csv->numbers("porosity_cracks"), percent)}};
+        const double proposed = find_number(summary, {fmt::format("sweep.proposed.{}", radius)});
+        if (std::isfinite(proposed)) f.guides = {{proposed, fmt::format("proposed {:.3g} px", proposed)}};
+        work.page.figure(f);
+    }
+}
+
 }  // namespace
 
 void write_microstructure(Work& work)
@@ -129,7 +157,18 @@ void write_microstructure(Work& work)
     profiles(work);
     local_thickness(work);
     representativeness(work);
+    sweeps(work, summary);
     work.page.add("</div>");
+    const auto picture = [&](std::string_view file, std::string_view caption, std::string_view paper) {
+        const auto path = work.folder.room("microstructure") / file;
+        if (std::filesystem::is_regular_file(path))
+            work.page.picture(fmt::format("microstructure_{}", path.stem().string()), io::read_text(path), caption,
+                              work.figure(paper));
+    };
+    picture("thresholds.png", "The middle slice segmented by each threshold.", "Fig. 4");
+    picture("phases.png", "The classification step by step.", "Fig. 6");
+    picture("sweep_R_C.png", "The middle slice classified with each R_C = R_E.", "");
+    picture("sweep_R_E.png", "The middle slice classified with each R_E.", "");
     end_room(work, "microstructure");
 }
 
