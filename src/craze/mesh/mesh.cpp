@@ -1,10 +1,6 @@
 #include "craze/mesh/mesh.hpp"
 
 #include "craze/core/errors.hpp"
-#include "craze/core/json.hpp"
-#include "craze/core/parallel.hpp"
-#include "craze/core/progress.hpp"
-#include "craze/io/triangles.hpp"
 #include "craze/mesh/alpha_shape.hpp"
 #include "craze/mesh/medial_surface.hpp"
 #include "craze/mesh/skeleton.hpp"
@@ -28,6 +24,8 @@ void describe(Schema& schema, Settings& settings)
                   "per_slice: the slices are perpendicular to this axis");
     schema.quantity("alpha", settings.alpha, Dimension::pixel, {smallest_alpha, largest_alpha},
                     "radius of the alpha shape: gaps in a crack up to twice as wide are bridged");
+    schema.flag("stl", settings.stl, "also write cracks.stl");
+    schema.flag("vtp", settings.vtp, "also write cracks.vtp: crack number and opening on each triangle, for ParaView");
 }
 
 void check(const Settings& settings)
@@ -55,41 +53,6 @@ CrackSurface mesh_cracks(const Mask& crack, double voxel_size, const Settings& s
     surface.triangles = std::move(lattice.triangles);
     surface.sides = std::move(lattice.sides);
     return surface;
-}
-
-void save(const CrackSurface& surface, const std::filesystem::path& folder)
-{
-    io::TriangleView view{surface.vertices, surface.triangles};
-    if (!surface.sides.empty()) view.fields.push_back({"sides", std::span(surface.sides)});
-    io::write_ply(folder / "cracks.ply", view);
-}
-
-CrackSurface load_surface(const std::filesystem::path& folder)
-{
-    io::TriangleMesh mesh = io::read_ply(folder / "cracks.ply", "sides");
-    // A surface drawn or edited elsewhere has no such property: its triangles are the sheet.
-    if (mesh.tags.size() != mesh.triangles.size()) mesh.tags.assign(mesh.triangles.size(), 2);
-    return {std::move(mesh.vertices), std::move(mesh.triangles), std::move(mesh.tags)};
-}
-
-Json summary(const CrackSurface& surface, double volume)
-{
-    const double area = parallel_sum(static_cast<std::int64_t>(surface.triangles.size()), [&](std::int64_t i) {
-        const auto t = static_cast<std::size_t>(i);
-        const auto corner = [&](std::size_t k) {
-            return surface.vertices[static_cast<std::size_t>(surface.triangles[t][k])];
-        };
-        return 0.25 * surface.sides[t] * norm(cross(corner(1) - corner(0), corner(2) - corner(0)));
-    });
-    Json json;
-    json["vertices"] = surface.vertices.size();
-    json["triangles"] = surface.triangles.size();
-    json["triangles_per_vertex"] = surface.vertices.empty() ? 0.0
-                                                            : static_cast<double>(surface.triangles.size()) /
-                                                                  static_cast<double>(surface.vertices.size());
-    json["area_m2"] = area;
-    json["area_per_volume_1_per_m"] = area / volume;
-    return json;
 }
 
 }  // namespace craze::mesh

@@ -6,6 +6,7 @@
 #include "craze/core/mask.hpp"
 #include "craze/core/schema.hpp"
 #include "craze/mesh/crack_surface.hpp"
+#include "craze/mesh/measures.hpp"
 
 #include <filesystem>
 
@@ -24,6 +25,7 @@ struct Settings {
     /// three pixels apart are joined (sheets steeper than 18 degrees to the slices), and cracks more than four voxels
     /// apart never are; with about 2.4 triangles per skeleton voxel. The paper does not say its own.
     double alpha = 2.0;
+    bool stl = false, vtp = false;  ///< further formats beside cracks.ply
 };
 
 void describe(Schema& schema, Settings& settings);
@@ -36,12 +38,16 @@ void check(const Settings& settings);
 /// @throws InvalidInput  when h is not positive
 CrackSurface mesh_cracks(const Mask& crack, double voxel_size, const Settings& settings);
 
-/// Writes cracks.ply (binary, metres) into `folder`.
+/// Writes cracks.ply (binary, metres) into `folder`: all that the next room needs.
 void save(const CrackSurface& surface, const std::filesystem::path& folder);
+/// The same, and what was measured: cracks.csv, pole_figure.csv and .png, rose.csv and .png, openings.csv; and further
+/// formats of the surface as settings say.
+void save(const CrackSurface& surface, const CrackMeasures& measures, const Settings& settings,
+          const std::filesystem::path& folder);
 /// @throws InvalidInput  when cracks.ply is missing or damaged
 CrackSurface load_surface(const std::filesystem::path& folder);
 
-/// What summary.json says; keys in docs/results.md. `volume` is that of the stack, m3.
-Json summary(const CrackSurface& surface, double volume);
+/// What summary.json says; keys in docs/results.md.
+Json summary(const CrackSurface& surface, const CrackMeasures& measures);
 
 }  // namespace craze::mesh

@@ -31,7 +31,9 @@ TEST_F(Mesh, OfAWallIsItsMiddlePlaneInMetres)
     const CrackSurface surface = mesh_cracks(wall(), h, {});
     ASSERT_FALSE(surface.triangles.empty());
     for (const Vec3& v : surface.vertices) EXPECT_NEAR(v.x, 9.5 * h, 1e-20);
-    const Json json = summary(surface, std::pow(20 * h, 3));
+    const Json json = summary(surface, measure(surface, wall(), h));
+    EXPECT_NEAR(json["opening_m"]["mean"].get<double>(), 3 * h, 1e-6 * h);
+    EXPECT_TRUE(json["quality"]["manifold"].get<bool>());
     // Centres leave half a pixel on each side, and thinning takes at most the thickness from the ends of a line.
     EXPECT_GE(json["area_m2"].get<double>() / (h * h), 19.0 * 16.0 - 1e-9);
     EXPECT_LE(json["area_m2"].get<double>() / (h * h), 19.0 * 19.0 + 1e-9);
@@ -57,8 +59,11 @@ TEST_F(Mesh, OfNoCracksIsEmptyAndCanBeSaved)
     const fs::path folder = fs::temp_directory_path() / "craze_mesh_test_empty";
     save(surface, folder);
     EXPECT_TRUE(load_surface(folder).triangles.empty());
+    const CrackMeasures measures = measure(surface, Mask(Shape{6, 6, 6}), 1e-6);
+    save(surface, measures, {}, folder);
+    EXPECT_EQ(summary(surface, measures)["area_m2"].get<double>(), 0.0);
+    EXPECT_EQ(summary(surface, measures)["cracks"].get<int>(), 0);
     fs::remove_all(folder);
-    EXPECT_EQ(summary(surface, 1.0)["area_m2"].get<double>(), 0.0);
 }
 
 TEST_F(Mesh, RefusesWrongSettingsByName)

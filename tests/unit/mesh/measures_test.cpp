@@ -1,0 +1,211 @@
+#include "craze/mesh/measures.hpp"
+
+#include "craze/core/parallel.hpp"
+#include "craze/core/progress.hpp"
+#include "craze/mesh/mesh.hpp"
+#include "craze/mesh/pictures.hpp"
+#include "support/masks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace craze::mesh {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double h = 0.5e-6;
+
+struct Disc {
+    Vec3 centre, normal;  // px
+    double radius, thickness;
+    bool holds(const Vec3& p) const
+    {
+        const double along = dot(p - centre, normal);
+        return std::abs(along) < 0.5 * thickness && norm(p - centre - along * normal) < radius;
+    }
+};
+
+Mask mask_of_discs(Shape shape, const std::vector<Disc>& discs)
+{
+    return support::mask_of(shape, [&](auto x, auto y, auto z) {
+        const Vec3 p{static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5, static_cast<double>(z) + 0.5};
+        return std::ranges::any_of(discs, [&](const Disc& d) { return d.holds(p); });
+    });
+}
+
+CrackMeasures measured(const Mask& mask, const Settings& settings)
+{
+    return measure(mesh_cracks(mask, h, settings), mask, h);
+}
+
+class Measures : public testing::Test {
+protected:
+    void SetUp() override { set_verbosity(Verbosity::quiet); }
+    void TearDown() override { set_threads(0); }
+};
+
+TEST_F(Measures, OfTiltedDiscsAreTheirNormalAreaOpeningAndRadius)
+{
+    Settings settings;
+    settings.skeleton = SkeletonKind::medial_surface;
+    for (const Vec3& direction : {Vec3{1, 0, 0}, Vec3{0, 0, 1}, Vec3{0.2, 1, 0.1}, Vec3{1, 0.15, 0.4},
+                                  Vec3{0.7, -0.6, 0.5}, Vec3{0.12, 0.05, 1}, Vec3{-0.5, 0.1, 1}}) {
+        const Disc disc{{30.3, 29.8, 30.1}, normalized(direction), 22.0, 4.0};
+        const Mask mask = mask_of_discs(Shape{60, 60, 60}, {disc});
+        const CrackMeasures m = measured(mask, settings);
+        const std::string what = "normal " + std::to_string(disc.normal.x) + " " + std::to_string(disc.normal.y);
+        ASSERT_GE(m.cracks.size(), 1U) << what;
+        EXPECT_GT(m.largest_share, 0.99) << what;
+        const SingleCrack& c = m.cracks[0];
+        EXPECT_GT(std::abs(dot(c.normal, disc.normal)), std::cos(1.5 * pi / 180.0)) << what;
+        EXPECT_GT(c.flatness, 0.98) << what;
+        // Rims recede by half the thickness, 2 px, and up to two voxels more.
+        EXPECT_LT(c.radius / h, 22.0) << what;
+        EXPECT_GT(c.radius / h, 22.0 - 4.0) << what;
+        EXPECT_NEAR(c.area, pi * c.radius * c.radius, 1e-9 * c.area);
+        EXPECT_NEAR(c.opening / h, 4.0, 0.3) << what;
+        EXPECT_NEAR(norm(c.centre / h - disc.centre), 0.0, 1.0) << what;
+        EXPECT_NEAR(m.crack_density, std::pow(c.radius, 3) / std::pow(60 * h, 3), 0.01 * m.crack_density);
+        EXPECT_FALSE(c.at_border);
+        EXPECT_TRUE(m.quality.clean());
+    }
+}
+
+TEST_F(Measures, OfAPlaneThroughTheVolumeAreItsSectionWhateverItsSlope)
+{
+    // 20 to 85 degrees to the slices, by the paper's way.
+    for (const double slope : {20.0, 31.0, 47.0, 75.0, 85.0}) {
+        const double a = slope * pi / 180.0;
+        const Vec3 normal{-std::sin(a), 0.0, std::cos(a)};
+        const Mask mask = support::mask_of(Shape{64, 40, 64}, [&](auto x, auto, auto z) {
+            return std::abs(dot(Vec3{static_cast<double>(x) - 31.5, 0.0, static_cast<double>(z) - 31.5}, normal)) < 2.0;
+        });
+        const CrackMeasures m = measured(mask, {});
+        ASSERT_EQ(m.cracks.size(), 1U) << slope;
+        // The border takes a rim, half the crack's width in a slice and a pixel or two, from each end of each line.
+        const double width = 4.0 / std::sin(a) + 4.0;
+        const double whole = 40.0 * 64.0 / std::max(std::sin(a), std::cos(a));
+        EXPECT_GT(m.area / (h * h), whole * (40.0 - width) / 40.0 * (64.0 - 4.0) / 64.0) << slope;
+        EXPECT_LT(m.area / (h * h), whole) << slope;
+        EXPECT_GT(m.fabric[0] * normal.x * normal.x + m.fabric[2] * normal.z * normal.z +
+                      2 * m.fabric[4] * normal.x * normal.z,
+                  0.99)
+            << slope;
+        EXPECT_NEAR(m.openings.mean / h, 4.0, 0.2) << slope;
+        EXPECT_TRUE(m.spans[1]) << slope;
+        // On sections perpendicular to y its line runs at this slope.
+        const std::size_t bin = static_cast<std::size_t>(slope / 5.0);
+        double near =
+            m.rose.share[1][bin] + m.rose.share[1][bin - 1] + m.rose.share[1][std::min<std::size_t>(bin + 1, 35)];
+        EXPECT_GT(near, 0.8) << slope;
+    }
+}
+
+TEST_F(Measures, TellSingleCracksApartAndSortThem)
+{
+    const Mask mask = mask_of_discs(
+        Shape{80, 50, 50},
+        {{{15, 25, 25}, {1, 0, 0}, 10, 3}, {{40, 25, 25}, {1, 0, 0}, 18, 3}, {{65, 25, 25}, {1, 0, 0}, 14, 3}});
+    const CrackSurface surface = mesh_cracks(mask, h, {});
+    const CrackMeasures m = measure(surface, mask, h);
+    ASSERT_EQ(m.cracks.size(), 3U);
+    EXPECT_NEAR(m.cracks[0].centre.x / h, 40.0, 1.0);
+    EXPECT_NEAR(m.cracks[1].centre.x / h, 65.0, 1.0);
+    EXPECT_NEAR(m.cracks[2].centre.x / h, 15.0, 1.0);
+    double sum = 0.0, total = 0.0, trace = 0.0;
+    for (const SingleCrack& c : m.cracks) sum += std::pow(c.radius, 3) / m.volume, total += c.area;
+    for (std::size_t k = 0; k < 3; ++k) trace += m.density_tensor[k];
+    EXPECT_NEAR(m.crack_density, sum, 1e-12);
+    EXPECT_NEAR(trace, sum, 1e-12);
+    EXPECT_NEAR(total, m.area, 1e-9 * m.area);
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+        const double x = surface.vertices[static_cast<std::size_t>(surface.triangles[t][0])].x / h;
+        EXPECT_EQ(m.crack_of[t], x < 25 ? 2 : x < 55 ? 0 : 1);
+    }
+}
+
+TEST_F(Measures, OfASphereShellFaceEverywhereAlike)
+{
+    const Mask shell = support::mask_of(Shape{80, 80, 80}, [](auto x, auto y, auto z) {
+        const double r =
+            norm(Vec3{static_cast<double>(x) - 39.5, static_cast<double>(y) - 39.5, static_cast<double>(z) - 39.5});
+        return std::abs(r - 34.0) < 1.6;
+    });
+    Settings settings;
+    settings.skeleton = SkeletonKind::medial_surface;
+    const CrackMeasures m = measured(shell, settings);
+    EXPECT_NEAR(m.area / (h * h) / (4.0 * pi * 34.0 * 34.0), 1.0, 0.03);
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(m.fabric[k], 1.0 / 3.0, 0.01);
+    for (std::size_t k = 3; k < 6; ++k) EXPECT_NEAR(m.fabric[k], 0.0, 0.01);
+    double sum = 0.0;
+    for (int quarter = 0; quarter < 4; ++quarter)
+        for (int ring = 0; ring < PoleFigure::rings; ring += 6) {
+            double part = 0.0;
+            for (int r = ring; r < ring + 6; ++r)
+                for (int s = 18 * quarter; s < 18 * (quarter + 1); ++s)
+                    part += m.poles.share[static_cast<std::size_t>(s + PoleFigure::sectors * r)];
+            EXPECT_NEAR(part * 12.0, 1.0, 0.1);
+            sum += part;
+        }
+    EXPECT_NEAR(sum, 1.0, 1e-9);
+    EXPECT_NEAR(m.openings.mean / h, 3.2, 0.25);
+}
+
+TEST_F(Measures, AreTheSameOnAnyNumberOfThreads)
+{
+    const Mask mask = mask_of_discs(Shape{60, 50, 40}, {{{20, 25, 20}, normalized({1, 1, 1}), 16, 3},
+                                                        {{40, 25, 20}, normalized({1, -2, 1}), 15, 4}});
+    set_threads(1);
+    const CrackMeasures one = measured(mask, {});
+    set_threads(2);
+    const CrackMeasures two = measured(mask, {});
+    EXPECT_EQ(one.area, two.area);
+    EXPECT_EQ(one.crack_density, two.crack_density);
+    EXPECT_EQ(one.poles.share, two.poles.share);
+    EXPECT_EQ(one.opening_of, two.opening_of);
+    EXPECT_EQ(one.crack_of, two.crack_of);
+    EXPECT_EQ(one.quality.edges, two.quality.edges);
+}
+
+TEST_F(Measures, ReportAMeshThatIsNotClean)
+{
+    CrackSurface s;
+    s.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, -1, 0}, {5, 5, 5}, {2, 0, 0}, {2, 1, 0}};
+    s.triangles = {{0, 1, 2}, {1, 0, 3}, {0, 4, 1}, {2, 0, 1}, {0, 1, 1}, {1, 6, 7}};
+    const MeshQuality q = quality(s, Incidence(s));
+    EXPECT_EQ(q.duplicate_triangles, 1);
+    EXPECT_EQ(q.degenerate_triangles, 1);
+    EXPECT_EQ(q.unused_vertices, 1);
+    EXPECT_FALSE(q.clean());
+
+    s.triangles = {{0, 1, 2}, {1, 0, 3}, {0, 4, 1}, {1, 6, 7}};
+    s.vertices.erase(s.vertices.begin() + 5);
+    for (auto& t : s.triangles)
+        for (auto& v : t) v -= v > 5 ? 1 : 0;
+    const MeshQuality three = quality(s, Incidence(s));  // three on an edge, and one that hangs on a corner
+    EXPECT_TRUE(three.clean());
+    EXPECT_FALSE(three.manifold());
+    EXPECT_EQ(three.edges, 10);
+    EXPECT_EQ(three.branching_edges, 1);
+    EXPECT_EQ(three.rim_edges, 9);
+    EXPECT_EQ(three.branching_vertices, 2);
+    EXPECT_EQ(three.euler_number, 7 - 10 + 4);
+}
+
+TEST_F(Measures, PictureOfThePolesPutsXToTheRightAndYUp)
+{
+    PoleFigure poles;
+    poles.share[static_cast<std::size_t>(0 + PoleFigure::sectors * (PoleFigure::rings - 1))] = 1.0;  // near +x
+    const io::Picture right = pole_figure_picture(poles);
+    EXPECT_LT(right.at(256 + 235, 256 - 3)[1], 100);
+    EXPECT_GT(right.at(256, 256)[1], 250);
+    poles.share = {};
+    poles.share[static_cast<std::size_t>(18 + PoleFigure::sectors * (PoleFigure::rings - 1))] = 1.0;  // near +y
+    EXPECT_LT(pole_figure_picture(poles).at(256 - 3, 256 - 235)[1], 100);
+}
+
+}  // namespace
+}  // namespace craze::mesh
