@@ -24,11 +24,15 @@ void pictures(Work& work, std::string_view room, std::string_view begin, const s
         if (entry.path().extension() == ".png" && entry.path().filename().string().starts_with(begin))
             files.push_back(entry.path());
     std::sort(files.begin(), files.end());
+    constexpr std::int64_t widest = 1200;
     for (const auto& file : files) {
         auto name = file.stem().string().substr(begin.size());
+        name.erase(0, name.find_first_not_of("0123456789_"));
         std::replace(name.begin(), name.end(), '_', ' ');
-        work.page.picture(fmt::format("{}_{}", room, file.stem().string()), io::read_text(file),
-                          caption.empty() ? name : fmt::format("{}: {}", caption, name), paper);
+        auto picture = io::read_png(file);
+        if (picture.channels == 1) picture = averaged_down(picture, (picture.width + widest - 1) / widest);
+        work.page.picture(fmt::format("{}_{}", room, file.stem().string()), io::png_bytes(picture),
+                          fmt::format("{}: {}.", caption, name), paper);
     }
 }
 
@@ -40,9 +44,9 @@ void quality_sheet(Work& work, const Json& steps)
         const char* title;
         std::initializer_list<std::string_view> keys;
     };
-    const Column columns[] = {{"noise σ [gray]", {"noise"}},           {"stripes rms [gray]", {"stripes"}},
-                              {"shading [gray]", {"shading"}},         {"solid [gray]", {"solid"}},
-                              {"void [gray]", {"void", "void_level"}}, {"contrast / noise", {"contrast_to_noise"}}};
+    const Column columns[] = {{"noise σ [gray]", {"noise"}},   {"stripes rms [gray]", {"stripes"}},
+                              {"shading [gray]", {"shading"}}, {"solid [gray]", {"solid_level"}},
+                              {"void [gray]", {"dark_level"}}, {"contrast / noise", {"contrast_to_noise"}}};
     Table table{{"step"}, {}, ""};
     for (const auto& c : columns) table.head.emplace_back(c.title);
     for (const Json& step : steps) {
@@ -53,7 +57,7 @@ void quality_sheet(Work& work, const Json& steps)
     work.page.add(html(table));
 }
 
-/// All columns of a CSV over its first.
+/// All columns of a CSV over its first; a first abscissa of 0 has no place on a logarithmic axis nor meaning here.
 Figure plain_plot(const CsvColumns& csv, std::string id, std::string caption, Axis x, Axis y)
 {
     Figure f;
@@ -62,6 +66,9 @@ Figure plain_plot(const CsvColumns& csv, std::string id, std::string caption, Ax
         auto name = csv.names[c];
         std::replace(name.begin(), name.end(), '_', ' ');
         f.series.push_back({name, csv.numbers(0), csv.numbers(c)});
+        auto& series = f.series.back();
+        if (f.y.log && !series.x.empty() && series.x.front() == 0.0)
+            series.x.erase(series.x.begin()), series.y.erase(series.y.begin());
     }
     return f;
 }
@@ -98,11 +105,14 @@ void write_images(Work& work)
             return f;
         }());
     if (const auto csv = work.folder.csv("images", "spectrum.csv"))
-        work.page.figure(plain_plot(*csv, "stripe_spectrum", "Power of the stripes before and after they were removed.",
+        work.page.figure(plain_plot(*csv, "stripe_spectrum",
+                                    "Power of what runs along the stripes against waves across them, after each step.",
                                     {"waves per pixel across the stripes"}, {"power [gray²]", true}));
     if (const auto csv = work.folder.csv("images", "profile.csv"))
-        work.page.figure(plain_plot(*csv, "illumination", "Gray level of the solid along the gradient of illumination.",
-                                    {"position [px]"}, {"gray level"}));
+        work.page.figure(
+            plain_plot(*csv, "illumination",
+                       "Gray level of the solid in layers along the gradient of illumination, before it was removed.",
+                       {"layer [px]"}, {"gray level"}));
     work.page.add("</div>");
     pictures(work, "images", "strip_", "Three slices after the step", work.figure("Fig. 3"));
     end_room(work, "images");

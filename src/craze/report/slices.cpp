@@ -37,18 +37,23 @@ Positions positions_of(const Shape& shape, std::int64_t along_z)
     return out;
 }
 
+/// First voxel of the part of a stack that is shown.
+using Corner = std::array<std::int64_t, 3>;
+
 /// Cuts at `positions` across each axis; across x: y to the right, z down; across y: x, z; across z: x, y.
-std::array<std::vector<Picture>, 3> cuts_of(io::VolumeReader& volume, const Positions& positions)
+/// of the part of the volume that begins at `corner` and has the given shape.
+std::array<std::vector<Picture>, 3> cuts_of(io::VolumeReader& volume, const Positions& positions, const Shape& shape,
+                                            const Corner& corner)
 {
-    const Shape shape = volume.info().shape;
+    const Shape whole = volume.info().shape;
     std::array<std::vector<Picture>, 3> cuts;
     for (std::size_t k = 0; k < positions[0].size(); ++k) cuts[0].emplace_back(shape.ny, shape.nz);
     for (std::size_t k = 0; k < positions[1].size(); ++k) cuts[1].emplace_back(shape.nx, shape.nz);
-    std::vector<std::uint8_t> slice(static_cast<std::size_t>(shape.nx * shape.ny));
+    std::vector<std::uint8_t> slice(static_cast<std::size_t>(whole.nx * whole.ny));
     for (std::int64_t z = 0; z < shape.nz; ++z) {
-        volume.read_slice<std::uint8_t>(z, slice);
+        volume.read_slice<std::uint8_t>(z + corner[2], slice);
         const auto value = [&](std::int64_t x, std::int64_t y) {
-            return slice[static_cast<std::size_t>(x + shape.nx * y)];
+            return slice[static_cast<std::size_t>(x + corner[0] + whole.nx * (y + corner[1]))];
         };
         for (std::size_t k = 0; k < positions[0].size(); ++k)
             for (std::int64_t y = 0; y < shape.ny; ++y) *cuts[0][k].at(y, z) = value(positions[0][k], y);
@@ -56,7 +61,8 @@ std::array<std::vector<Picture>, 3> cuts_of(io::VolumeReader& volume, const Posi
             for (std::int64_t x = 0; x < shape.nx; ++x) *cuts[1][k].at(x, z) = value(x, positions[1][k]);
         if (std::find(positions[2].begin(), positions[2].end(), z) != positions[2].end()) {
             cuts[2].emplace_back(shape.nx, shape.ny);
-            cuts[2].back().pixels = slice;
+            for (std::int64_t y = 0; y < shape.ny; ++y)
+                for (std::int64_t x = 0; x < shape.nx; ++x) *cuts[2].back().at(x, y) = value(x, y);
         }
     }
     return cuts;
@@ -70,25 +76,42 @@ struct Layer {
 
 /// Nothing (with a notice) where the file is missing, of another shape, or not 8-bit.
 std::optional<Layer> read_layer(const std::string& name, const fs::path& file, Shape& shape, double& voxel,
-                                std::int64_t slices)
+                                std::int64_t slices, const Corner& corner = {})
 {
     if (file.empty() || !fs::exists(file)) return std::nullopt;
     try {
         const auto volume = io::open_volume(file);
         volume->require(io::Sample::u8);
         if (shape.voxels() == 0) shape = volume->info().shape;
-        if (!(volume->info().shape == shape)) {
+        bool fits = true;
+        for (int axis = 0; axis < 3; ++axis)
+            fits = fits && corner[static_cast<std::size_t>(axis)] + shape[axis] <= volume->info().shape[axis];
+        const bool cropped = name == "raw" && corner != Corner{};
+        if (!fits || (!cropped && !(volume->info().shape == shape))) {
             notice(fmt::format("report: {} has another shape than the cleaned stack and is not shown", file.string()));
             return std::nullopt;
         }
         if (voxel == 0.0) voxel = volume->info().voxel_size.x;
-        return Layer{name, cuts_of(*volume, positions_of(shape, slices)), name == "phase"};
+        return Layer{name, cuts_of(*volume, positions_of(shape, slices), shape, corner), name == "phase"};
     } catch (const Interrupted&) {
         throw;
     } catch (const std::exception& error) {
         notice(fmt::format("report: {} is not shown: {}", file.string(), error.what()));
         return std::nullopt;
     }
+}
+
+/// Where the cleaned stack begins in the recorded one: the crop of the settings, then what every aligned slice covers.
+Corner corner_of(const OutputFolder& folder)
+{
+    Corner corner{};
+    const Json &asked = find(folder.run(), "settings.images.crop"),
+               &common = find(folder.summary("images"), "alignment.common_crop");
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        for (const Json* box : {&asked, &common})
+            if (box->is_array() && box->size() > 2 * axis && (*box)[2 * axis].is_number())
+                corner[axis] += (*box)[2 * axis].get<std::int64_t>();
+    return corner;
 }
 
 fs::path raw_stack(const OutputFolder& folder)
@@ -197,13 +220,13 @@ void write_slices(Work& work)
     double voxel = 0.0;
     const auto wanted = work.settings.slices;
     std::vector<Layer> layers;
-    const auto take = [&](const std::string& name, const fs::path& file) {
-        if (auto layer = read_layer(name, file, shape, voxel, wanted)) layers.push_back(std::move(*layer));
+    const auto take = [&](const std::string& name, const fs::path& file, const Corner& corner = {}) {
+        if (auto layer = read_layer(name, file, shape, voxel, wanted, corner)) layers.push_back(std::move(*layer));
     };
     take("gray", work.folder.room("images") / "gray.mhd");
     if (layers.empty()) return;
     take("phase", work.folder.room("microstructure") / "phase.mhd");
-    take("raw", raw_stack(work.folder));
+    take("raw", raw_stack(work.folder), corner_of(work.folder));
 
     const auto positions = positions_of(shape, wanted);
     std::int64_t factor = (shape.nx + work.settings.picture_width - 1) / work.settings.picture_width;

@@ -206,6 +206,21 @@ TEST_F(Folder, SlicesOfAStackAreInThePageWithAPictureForPrint)
     EXPECT_GT(crack[0], crack[2] + 100);
 }
 
+TEST_F(Folder, TheRecordedStackIsShownWhereTheCleanedOneBegins)
+{
+    Volume<std::uint8_t> raw({20, 16, 8}, 10);
+    raw(3 + 4, 2 + 5, 4) = 250;  // voxel (4, 5, 4) of the cleaned stack
+    fs::create_directories(out / "images");
+    fs::create_directories(out / "synth");
+    io::write_volume(out / "images" / "gray.mhd", Volume<std::uint8_t>({12, 12, 8}, 100), 0.0);
+    io::write_volume(out / "synth" / "stack.tif", raw, 0.0);
+    summary("images", R"({"alignment": {"common_crop": [3, 15, 2, 14]}})");
+    page();
+    EXPECT_TRUE(take_notices().empty());
+    const auto still = io::read_png(out / "report" / "figures" / "slices.png");
+    EXPECT_EQ(still.at(4, 5)[0], 250);
+}
+
 TEST_F(Folder, AStackOfAnotherShapeIsLeftOutWithANotice)
 {
     fs::create_directories(out / "images");
