@@ -1,6 +1,7 @@
 #include "craze/mechanics/contacts.hpp"
 
 #include "craze/core/parallel.hpp"
+#include "craze/mechanics/holding.hpp"
 
 #include <cassert>
 
@@ -15,6 +16,7 @@ UnilateralContacts unilateral_contacts(const Lattice& lattice, std::span<const d
         out.tx.push_back(t.x), out.ty.push_back(t.y), out.tz.push_back(t.z);
         out.k.push_back(k), out.gap_0.push_back(gap_0), out.is_bond.push_back(is_bond);
     };
+    const Holding holding(lattice);
     // Both lists are sorted by (i, j): merge them.
     const FreeContacts& free = lattice.free;
     const std::size_t m = kind.size(), n = free_contacts ? free.i.size() : 0;
@@ -23,8 +25,9 @@ UnilateralContacts unilateral_contacts(const Lattice& lattice, std::span<const d
         const bool bond_first =
             p == n || (b < m && (lattice.i[b] < free.i[p] || (lattice.i[b] == free.i[p] && lattice.j[b] <= free.j[p])));
         if (!bond_first) {
-            add(free.i[p], free.j[p], {free.tx[p], free.ty[p], free.tz[p]}, lattice.contact_stiffness, free.gap[p],
-                false);
+            if (!holding.holds(free.i[p], free.j[p], kind))
+                add(free.i[p], free.j[p], {free.tx[p], free.ty[p], free.tz[p]}, lattice.contact_stiffness, free.gap[p],
+                    false);
             ++p;
             continue;
         }

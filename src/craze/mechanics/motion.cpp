@@ -159,7 +159,7 @@ void Motion::Work::follow_neighbours()
 {
     if (std::ssize(shares) != team_size()) share_out();
     if (!options.free_contacts) return;
-    if (neighbours.follow(now.pose, moved)) share_pairs();
+    if (neighbours.follow(now.pose, now.kind, moved)) share_pairs();
     moved = 0.0;
 }
 
@@ -274,6 +274,9 @@ void Motion::Work::break_beams()
     for (Share& share : shares)
         for (std::size_t k = 0; k < share.border.size(); ++k)
             share.border_bonds.slack[k] = bonds.slack[static_cast<std::size_t>(share.border[k])];
+    if (!options.free_contacts) return;
+    now.fracture_energy -= neighbours.part(pose_next, now.kind);
+    share_pairs();
 }
 
 void Motion::Work::step()

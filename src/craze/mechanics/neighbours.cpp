@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace craze::mechanics {
 
@@ -43,11 +44,15 @@ void Pairs::add(const Pairs& from, std::size_t p)
 }
 
 Neighbours::Neighbours(const Lattice& lattice, Geometry geometry)
-    : lattice_(lattice), geometry_(geometry), reach_(0.3 * lattice.mean_radius), skin_(0.03 * lattice.mean_radius)
+    : lattice_(lattice),
+      holding_(lattice),
+      geometry_(geometry),
+      reach_(0.3 * lattice.mean_radius),
+      skin_(0.03 * lattice.mean_radius)
 {
 }
 
-bool Neighbours::follow(std::span<const double> pose, double moved)
+bool Neighbours::follow(std::span<const double> pose, std::span<const domain::BondKind> kind, double moved)
 {
     until_search_ -= moved, until_choice_ -= moved;
     if (until_search_ >= 0.0 && until_choice_ >= 0.0) return false;
@@ -56,9 +61,28 @@ bool Neighbours::follow(std::span<const double> pose, double moved)
         until_search_ = reach_;
     }
     skin_ = std::clamp(20.0 * moved, 0.03 * lattice_.mean_radius, reach_);
-    choose(pose);
+    choose(pose, kind);
     until_choice_ = skin_;
     return true;
+}
+
+double Neighbours::part(std::span<const double> pose, std::span<const domain::BondKind> kind)
+{
+    const Pairs before = std::move(active_);
+    choose(pose, kind);
+    until_choice_ = std::min(until_choice_, skin_);
+    double energy = 0.0;
+    std::size_t q = 0;  // both lists are sorted by (i, j)
+    for (std::size_t p = 0; p < active_.i.size(); ++p) {
+        const auto behind = [&] {
+            return before.i[q] < active_.i[p] || (before.i[q] == active_.i[p] && before.j[q] < active_.j[p]);
+        };
+        while (q < before.i.size() && behind()) ++q;
+        if (q < before.i.size() && before.i[q] == active_.i[p] && before.j[q] == active_.j[p]) continue;
+        const double gap = apart(active_, p, geometry_, pose.data()).d - active_.limit[p];
+        if (gap < 0.0) energy += 0.5 * lattice_.contact_stiffness * gap * gap;
+    }
+    return energy;
 }
 
 /// All unbonded pairs nearer than reach, by cells of the current centres.
@@ -155,12 +179,14 @@ void Neighbours::search(std::span<const double> pose)
         for (std::size_t p = 0; p < part.i.size(); ++p) near_.add(part, p);
 }
 
-/// The near pairs whose gap is less than the skin.
-void Neighbours::choose(std::span<const double> pose)
+/// The near pairs whose gap is less than the skin and that nothing holds together.
+void Neighbours::choose(std::span<const double> pose, std::span<const domain::BondKind> kind)
 {
     active_ = {};
     for (std::size_t p = 0; p < near_.i.size(); ++p)
-        if (apart(near_, p, geometry_, pose.data()).d < near_.limit[p] + skin_) active_.add(near_, p);
+        if (apart(near_, p, geometry_, pose.data()).d < near_.limit[p] + skin_ &&
+            !holding_.holds(near_.i[p], near_.j[p], kind))
+            active_.add(near_, p);
 }
 
 double add_pairs(const Pairs& pairs, std::int64_t begin, std::int64_t end, double stiffness, Geometry geometry,

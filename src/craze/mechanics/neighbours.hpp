@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include "craze/mechanics/holding.hpp"
 #include "craze/mechanics/lattice.hpp"
 #include "craze/mechanics/motion.hpp"
 
@@ -24,23 +25,27 @@ struct Pairs {
 
 /// Keeps the pairs that may touch: all near ones, searched anew when elements have moved far, and of these the few
 /// whose gap is small, chosen anew when elements have moved a little. In small displacements the pairs are the
-/// lattice's.
+/// lattice's. Pairs that a third element holds together (Holding) are left out until they are parted.
 class Neighbours {
 public:
     Neighbours(const Lattice& lattice, Geometry geometry);
     /// Makes sure that every pair that touches now is active.
     /// @param pose   shape (n, 8)
+    /// @param kind   of each bond now
     /// @param moved  how much nearer any two near elements may have come since the last call, m
     /// @return whether the active pairs have changed
-    bool follow(std::span<const double> pose, double moved);
+    bool follow(std::span<const double> pose, std::span<const domain::BondKind> kind, double moved);
+    /// Beams have broken: pairs that were held become active. Gives the energy that they hold at once, J.
+    double part(std::span<const double> pose, std::span<const domain::BondKind> kind);
     const Pairs& active() const { return active_; }
     std::int64_t searches() const { return searches_; }
 
 private:
     void search(std::span<const double> pose);
-    void choose(std::span<const double> pose);
+    void choose(std::span<const double> pose, std::span<const domain::BondKind> kind);
 
     const Lattice& lattice_;
+    Holding holding_;
     Geometry geometry_;
     double reach_, skin_;                               ///< m
     double until_search_ = -1.0, until_choice_ = -1.0;  ///< m of approach left

@@ -1,0 +1,71 @@
+#include "craze/mechanics/holding.hpp"
+
+#include "craze/mechanics/contacts.hpp"
+#include "support/packings.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace craze::mechanics {
+namespace {
+
+using domain::BondKind;
+
+// Elements 0 and 2 touch without a bond; 1 is bonded to both.
+Lattice bent_triple()
+{
+    auto d = support::bonded({3, 3, 3}, {{0, 0, 0}, {1, 1, 0}, {2, 0, 0}}, {1, 1, 1}, {{0, 1}, {1, 2}});
+    d.near.i = {0};
+    d.near.j = {2};
+    d.near.thickness = {0.0};
+    return make_lattice(d, {});
+}
+
+TEST(Holding, AThirdElementHoldsTwoOthersUntilABeamBreaks)
+{
+    const Lattice lattice = bent_triple();
+    const Holding holding(lattice);
+    std::vector<BondKind> kind = lattice.kind;
+    EXPECT_TRUE(holding.holds(0, 2, kind));
+    EXPECT_TRUE(holding.holds(2, 0, kind));
+    EXPECT_EQ(unilateral_contacts(lattice, kind, true).size(), 0);
+    kind[1] = BondKind::contact_beam;
+    EXPECT_FALSE(holding.holds(0, 2, kind));
+    EXPECT_EQ(unilateral_contacts(lattice, kind, true).size(), 2) << "the broken beam and the free contact";
+}
+
+TEST(Holding, AgreesWithBruteForceOnARandomGraph)
+{
+    Random random(5);
+    std::vector<Vec3> centres;
+    for (int e = 0; e < 40; ++e) centres.push_back({random.uniform(), random.uniform(), random.uniform()});
+    std::set<std::pair<std::int32_t, std::int32_t>> pairs;
+    while (pairs.size() < 120) {
+        const auto i = static_cast<std::int32_t>(random.below(40)), j = static_cast<std::int32_t>(random.below(40));
+        if (i != j) pairs.insert(std::minmax(i, j));
+    }
+    const auto d = support::bonded({1, 1, 1}, centres, std::vector<double>(40, 0.1), {pairs.begin(), pairs.end()});
+    const Lattice lattice = make_lattice(d, {});
+    std::vector<BondKind> kind = lattice.kind;
+    for (auto& k : kind) k = random.uniform() < 0.3 ? BondKind::contact_beam : BondKind::beam;
+
+    std::set<std::pair<std::int32_t, std::int32_t>> intact;
+    for (std::size_t b = 0; b < kind.size(); ++b)
+        if (kind[b] == BondKind::beam)
+            intact.insert({lattice.i[b], lattice.j[b]}), intact.insert({lattice.j[b], lattice.i[b]});
+    const Holding holding(lattice);
+    int held = 0;
+    for (std::int32_t i = 0; i < 40; ++i)
+        for (std::int32_t j = i + 1; j < 40; ++j) {
+            bool expected = false;
+            for (std::int32_t k = 0; k < 40; ++k)
+                expected = expected || (intact.contains({i, k}) && intact.contains({k, j}));
+            EXPECT_EQ(holding.holds(i, j, kind), expected) << i << " " << j;
+            held += expected;
+        }
+    EXPECT_GT(held, 100);
+}
+
+}  // namespace
+}  // namespace craze::mechanics
