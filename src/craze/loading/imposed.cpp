@@ -6,6 +6,8 @@
 
 namespace craze::loading {
 
+std::string half_rate_name(const std::string& name) { return fmt::format("{} half rate", name); }
+
 double strain_at_density(const std::array<Drive, 3>& drive, double eta)
 {
     // V/V_0 - 1/(1 + eta) grows with s as long as every driven edge keeps a positive length.

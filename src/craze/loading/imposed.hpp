@@ -45,6 +45,9 @@ struct Loading {
     double stop_damage = 1.0;  ///< ends when this share of the beams has broken; 1: never
 };
 
+/// The name of the twin of a fracture loading that is run at half its rate.
+std::string half_rate_name(const std::string& name);
+
 /// Strain s of the program at which a triaxial drive has compacted the box to density eta = (V0 - V)/V [Eqs. 20, 21].
 /// @throws InvalidInput  when no shortening of the driven axes gives this density
 double strain_at_density(const std::array<Drive, 3>& drive, double eta);

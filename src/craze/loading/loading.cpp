@@ -4,8 +4,12 @@
 #include "craze/core/progress.hpp"
 #include "craze/loading/calibration.hpp"
 #include "craze/loading/material_library.hpp"
+#include "craze/loading/moving.hpp"
+#include "craze/loading/response_files.hpp"
+#include "craze/loading/restart.hpp"
 #include "craze/loading/rig.hpp"
 #include "craze/loading/specimen.hpp"
+#include "craze/loading/states.hpp"
 
 #include <fmt/core.h>
 
@@ -51,10 +55,78 @@ void add_modulus(std::vector<Modulus>& moduli, const Curve& curve)
     row->nu = -0.5 * (p.interior_strain[(axis + 1) % 3] + p.interior_strain[(axis + 2) % 3]) / p.interior_strain[axis];
 }
 
+/// UTS and UCS; a loading at half the rate says how far its twin would move.
+void add_strengths(Response& response)
+{
+    for (const auto& curve : response.curves) {
+        if (curve.loading.kind != Loading::Kind::fracture) continue;
+        const Strength s = strength_of(curve);
+        const auto twin =
+            std::find_if(response.strengths.begin(), response.strengths.end(),
+                         [&](const Strength& other) { return s.loading == half_rate_name(other.loading); });
+        if (twin != response.strengths.end() && twin->strength > 0.0)
+            twin->change = std::abs(s.strength / twin->strength - 1.0);
+        response.strengths.push_back(s);
+    }
+}
+
+/// Keeps what a stopped run has finished, and the states that were asked for.
+class Keeper {
+public:
+    Keeper(std::filesystem::path folder, const Settings::Output& output) : folder_(std::move(folder)), output_(output)
+    {
+    }
+
+    Curve run(Rig& rig, const Loading& loading) const
+    {
+        const bool keeps = !folder_.empty();
+        const std::string key = keeps ? restart_key(rig, loading) : std::string{};
+        const auto finished = folder_ / "partial" / (key + ".json");
+        if (keeps && std::filesystem::exists(finished)) return read_curve(finished);
+
+        double before = 0.0;
+        const Watcher watch = [&](const Moment& moment) {
+            const double s = moment.point.program;
+            for (const double wanted : output_.states)
+                if (moment.index > 0 && std::min(before, s) <= wanted && wanted <= std::max(before, s) &&
+                    wanted != before)
+                    write_state(state_file(loading, format_quantity(wanted, Dimension::fraction)), rig, moment);
+            if (moment.last && output_.last_state && loading.kind != Loading::Kind::modulus)
+                write_state(state_file(loading, "last"), rig, moment);
+            before = s;
+        };
+        Curve curve;
+        if (loading.solver == Solver::equilibrium) {
+            curve = rig.rest(loading, keeps ? watch : Watcher{});
+        } else {
+            MovingOptions options;
+            if (keeps) options.restart = folder_ / "partial" / (key + ".restart");
+            options.checkpoint = output_.checkpoint;
+            curve = move(rig, loading, options, keeps ? watch : Watcher{});
+        }
+        if (keeps) write_curve(curve, finished);
+        return curve;
+    }
+    /// Once all is in the response.
+    void clear() const
+    {
+        if (!folder_.empty()) std::filesystem::remove_all(folder_ / "partial");
+    }
+
+private:
+    std::filesystem::path state_file(const Loading& loading, const std::string& when) const
+    {
+        return folder_ / "states" / fmt::format("{}_{}.vtu", file_name(loading.name), file_name(when));
+    }
+
+    std::filesystem::path folder_;
+    const Settings::Output& output_;
+};
+
 }  // namespace
 
 Response load(const domain::Discretisation& discretisation, const Settings& settings,
-              [[maybe_unused]] const std::filesystem::path& folder)
+              const std::filesystem::path& folder)
 {
     check(settings);
     const Stopwatch watch;
@@ -72,6 +144,7 @@ Response load(const domain::Discretisation& discretisation, const Settings& sett
         if (const auto name = specimen_name(loading.specimen);
             std::find(specimens.begin(), specimens.end(), name) == specimens.end())
             specimens.push_back(name);
+    const Keeper keeper(folder, settings.output);
     std::vector<Curve> curves(loadings.size());
     for (const auto& name : specimens) {
         const domain::Domain specimen = domain::with_defects(discretisation, parse_specimen(name));
@@ -79,13 +152,15 @@ Response load(const domain::Discretisation& discretisation, const Settings& sett
         for (std::size_t k = 0; k < loadings.size(); ++k) {
             if (specimen_name(loadings[k].specimen) != name) continue;
             check_interrupt();
-            curves[k] = rig.rest(loadings[k]);
+            curves[k] = keeper.run(rig, loadings[k]);
         }
     }
     for (auto& curve : curves) {
         if (curve.loading.kind == Loading::Kind::modulus) add_modulus(response.moduli, curve);
         response.curves.push_back(std::move(curve));
     }
+    add_strengths(response);
+    keeper.clear();
     response.seconds = watch.seconds();
     return response;
 }

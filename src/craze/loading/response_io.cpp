@@ -1,6 +1,7 @@
 #include "craze/core/errors.hpp"
 #include "craze/io/atomic_file.hpp"
 #include "craze/loading/loading.hpp"
+#include "craze/loading/response_files.hpp"
 #include "craze/loading/response_json.hpp"
 
 #include <fmt/format.h>
@@ -46,6 +47,8 @@ std::string csv(const std::vector<T>& rows)
     return text;
 }
 
+}  // namespace
+
 std::string file_name(const std::string& loading)
 {
     std::string name;
@@ -54,7 +57,22 @@ std::string file_name(const std::string& loading)
     return name;
 }
 
-}  // namespace
+void write_curve(const Curve& curve, const std::filesystem::path& file)
+{
+    std::filesystem::create_directories(file.parent_path());
+    io::write_text(file, as_json(curve).dump() + "\n");
+}
+
+Curve read_curve(const std::filesystem::path& file)
+{
+    Curve curve;
+    try {
+        read_json(Json::parse(io::read_text(file)), curve);
+    } catch (const Json::exception& error) {
+        throw InvalidInput(fmt::format("{}: not a finished loading ({}); delete it", file.string(), error.what()));
+    }
+    return curve;
+}
 
 void save(const Response& response, const std::filesystem::path& folder)
 {

@@ -38,6 +38,7 @@ Rig::Rig(const domain::Domain& domain, const mechanics::BeamMaterial& beam, cons
     : lattice_(mechanics::make_lattice(domain, beam, dense.rho_D)),
       dense_(dense),
       options_(options),
+      fill_(domain.dense_volume / (domain.box.x * domain.box.y * domain.box.z)),
       faces_(find_faces(lattice_, options.face_reach)),
       gauge_(lattice_, faces_, options.interior_margin * lattice_.mean_radius),
       solver_(lattice_, {.tolerance = options.residual})
@@ -105,7 +106,7 @@ Curve Rig::rest(const Loading& loading, const Watcher& watch)
     auto previous = mechanics::rest_state(lattice_);
     auto forces = mechanics::forces(lattice_, previous);
     curve.points.push_back(measure(loading, 0.0, previous, forces));
-    if (watch) watch({loading, curve.points.back(), 0, previous, forces});
+    if (watch) watch({loading, curve.points.back(), 0, previous, forces, {}, false});
 
     mechanics::State before;  // the point before the previous one
     double peak = 0.0;
@@ -148,15 +149,21 @@ Curve Rig::rest(const Loading& loading, const Watcher& watch)
             small = previous;
             for (auto& u : small->u) u /= s;
         }
-        if (watch)
-            watch({loading, curve.points.back(), static_cast<std::int64_t>(k) + 1, previous, equilibrium.forces});
-        progress.advance();
         const double stress = std::abs(p.stress[loading.axis]);
         peak = std::max(peak, stress);
-        if (loading.stop_drop < 1.0 && stress <= (1.0 - loading.stop_drop) * peak) {
+        if (loading.stop_drop < 1.0 && stress <= (1.0 - loading.stop_drop) * peak)
             curve.stopped = fmt::format("stress fell to {:.3g} of its peak", stress / peak);
-            break;
-        }
+        const bool last = k + 1 == loading.path.size() || !curve.stopped.empty();
+        if (watch)
+            watch({loading,
+                   curve.points.back(),
+                   static_cast<std::int64_t>(k) + 1,
+                   previous,
+                   equilibrium.forces,
+                   {},
+                   last});
+        progress.advance();
+        if (last) break;
     }
     if (loading.kind == Loading::Kind::triaxial) fill_bulk_modulus(curve.points);
     curve.seconds = watch_time.seconds();

@@ -9,6 +9,7 @@
 #include <array>
 #include <functional>
 #include <optional>
+#include <span>
 
 namespace craze::loading {
 
@@ -25,6 +26,8 @@ struct Moment {
     std::int64_t index;  ///< of the point on its curve
     const mechanics::State& state;
     const mechanics::Forces& forces;
+    std::span<const double> velocity;  ///< shape (n, 6), m/s and rad/s; empty at rest
+    bool last;                         ///< no other follows
 };
 using Watcher = std::function<void(const Moment&)>;
 
@@ -40,6 +43,8 @@ public:
     const Faces& faces() const { return faces_; }
     const StrainGauge& gauge() const { return gauge_; }
     const mechanics::DenseMaterial& dense() const { return dense_; }
+    /// Volume of the spheres of the dense packing over the volume of the box.
+    double fill() const { return fill_; }
 
     /// Sides of the driven axes at program strain s: the least one held, the other at s factor times the edge.
     mechanics::Constraints constraints(const Loading& loading, double s) const;
@@ -58,6 +63,7 @@ private:
     mechanics::Lattice lattice_;
     mechanics::DenseMaterial dense_;
     RigOptions options_;
+    double fill_ = 1.0;
     Faces faces_;
     StrainGauge gauge_;
     mechanics::EquilibriumSolver solver_;

@@ -300,7 +300,7 @@ std::vector<Loading> plan(const Settings& s, const Vec3& box)
                         loadings.push_back(loading);
                         if (!s.fracture.check_rate) continue;
                         loading.crossings *= 2.0;
-                        loading.name = fmt::format("{} half rate", loading.name);
+                        loading.name = half_rate_name(loading.name);
                         loadings.push_back(std::move(loading));
                     }
                     if (s.fracture.cycles.empty()) continue;
