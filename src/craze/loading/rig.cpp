@@ -139,10 +139,10 @@ Curve Rig::rest(const Loading& loading, const Watcher& watch)
         Point p = measure(loading, s, previous, equilibrium.forces);
         p.residual = equilibrium.residual;
         p.iterations = equilibrium.iterations;
-        const Point& last = curve.points.back();
-        p.work = last.work;
+        const Point& earlier = curve.points.back();
+        p.work = earlier.work;
         for (int a = 0; a < 3; ++a)
-            p.work += 0.5 * (p.stress[a] + last.stress[a]) * (p.strain[a] - last.strain[a]) * lattice_.box.x *
+            p.work += 0.5 * (p.stress[a] + earlier.stress[a]) * (p.strain[a] - earlier.strain[a]) * lattice_.box.x *
                       lattice_.box.y * lattice_.box.z;
         curve.points.push_back(p);
         if (k == 0 && is_uniaxial(loading) && !small) {
