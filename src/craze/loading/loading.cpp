@@ -18,6 +18,8 @@
 namespace craze::loading {
 namespace {
 
+RigOptions rig_options(const Settings& s) { return {s.face_reach, s.interior_margin, s.contact_slack, s.residual}; }
+
 Calibration find_beams(const domain::Domain& dense, const Settings& s)
 {
     const mechanics::DenseMaterial target = dense_material(s);
@@ -25,9 +27,9 @@ Calibration find_beams(const domain::Domain& dense, const Settings& s)
     options.nu_B = s.beam.given.nu_B;
     options.first_guess = s.beam.given.r_tilde;
     options.tolerance = s.beam.tolerance;
-    options.rig = {s.face_reach, s.interior_margin, s.residual};
+    options.rig = rig_options(s);
     if (!s.beam.calibrate) return measure_given(dense, target, s.beam.given, options);
-    const std::string recipe = calibration_recipe(dense, target, options.nu_B, s.face_reach, s.interior_margin);
+    const std::string recipe = calibration_recipe(dense, target, options.nu_B, options.rig);
     if (auto kept = find_calibration(recipe, s.beam.tolerance, s.beam.library)) return *kept;
     Calibration calibration = calibrate(dense, target, options);
     calibration.recipe = recipe;
@@ -148,7 +150,7 @@ Response load(const domain::Discretisation& discretisation, const Settings& sett
     std::vector<Curve> curves(loadings.size());
     for (const auto& name : specimens) {
         const domain::Domain specimen = domain::with_defects(discretisation, parse_specimen(name));
-        Rig rig(specimen, c.beam, c.target, {settings.face_reach, settings.interior_margin, settings.residual});
+        Rig rig(specimen, c.beam, c.target, rig_options(settings));
         for (std::size_t k = 0; k < loadings.size(); ++k) {
             if (specimen_name(loadings[k].specimen) != name) continue;
             check_interrupt();

@@ -4,6 +4,7 @@
 
 #include "craze/domain/domain.hpp"
 #include "craze/loading/response.hpp"
+#include "craze/loading/rig.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -19,7 +20,7 @@ mechanics::DenseMaterial find_material(const std::string& name, const std::files
 /// What a calibration depends on, in one hash: the packing and its bonds, the target, nu_B, and how E and nu are
 /// measured.
 std::string calibration_recipe(const domain::Domain& dense, const mechanics::DenseMaterial& target, double nu_B,
-                               double face_reach, double interior_margin);
+                               const RigOptions& rig);
 
 /// The calibration kept under a recipe whose error is within `tolerance`.
 std::optional<Calibration> find_calibration(const std::string& recipe, double tolerance,
