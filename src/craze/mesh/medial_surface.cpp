@@ -54,6 +54,17 @@ public:
     }
 
 private:
+    // Waking threads nine times a pass costs more than a small volume does.
+    template <class Body>
+    void each(std::int64_t tasks, Body&& body) const
+    {
+        if (set_.shape().voxels() >= 1'000'000) {
+            parallel_tasks(tasks, body);
+            return;
+        }
+        for (std::int64_t task = 0; task < tasks; ++task) body(task);
+    }
+
     Row row(std::int64_t y, std::int64_t z) const
     {
         const Shape& s = set_.shape();
@@ -106,7 +117,7 @@ private:
     void find_border(std::size_t side, std::int64_t pass)
     {
         const Shape& s = set_.shape();
-        parallel_tasks(s.nz, [&](std::int64_t z) {
+        each(s.nz, [&](std::int64_t z) {
             for (std::int64_t y = 0; y < s.ny; ++y) {
                 const auto tried = tried_.row(y, z), kept = kept_.row(y, z);
                 std::ranges::fill(tried, Word{0});
@@ -137,7 +148,7 @@ private:
         const std::int64_t z0 = field >> 2, y0 = field >> 1 & 1;
         const Word parity = (field & 1) != 0 ? ~even_bits : even_bits;
         std::vector<char> any(static_cast<std::size_t>(s.nz), 0);
-        parallel_tasks((s.nz - z0 + 1) / 2, [&](std::int64_t task) {
+        each((s.nz - z0 + 1) / 2, [&](std::int64_t task) {
             const std::int64_t z = z0 + 2 * task;
             for (std::int64_t y = y0; y < s.ny; y += 2) {
                 const auto tried = tried_.row(y, z);

@@ -5,6 +5,7 @@
 #include "craze/core/vec3.hpp"
 #include "craze/mesh/neighbours.hpp"
 #include "support/masks.hpp"
+#include "support/topology.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,63 +14,10 @@
 namespace craze::mesh {
 namespace {
 
+using support::components;
+using support::euler_number;
 using support::mask_of;
 using support::random_mask;
-
-bool in(const Mask& m, std::int64_t x, std::int64_t y, std::int64_t z)
-{
-    const Shape& s = m.shape();
-    return x >= 0 && y >= 0 && z >= 0 && x < s.nx && y < s.ny && z < s.nz && m(x, y, z);
-}
-
-// Parts of the set (26-connected) or of the rest (6-connected, with a border of rest around the volume).
-int components(const Mask& m, bool set)
-{
-    const std::int64_t nx = m.shape().nx + 2, ny = m.shape().ny + 2, nz = m.shape().nz + 2;
-    std::vector<char> left(static_cast<std::size_t>(nx * ny * nz));
-    for (std::int64_t i = 0; i < nx * ny * nz; ++i)
-        left[static_cast<std::size_t>(i)] = in(m, i % nx - 1, i / nx % ny - 1, i / nx / ny - 1) == set;
-    int count = 0;
-    std::vector<std::int64_t> todo;
-    for (std::int64_t start = 0; start < nx * ny * nz; ++start) {
-        if (!left[static_cast<std::size_t>(start)]) continue;
-        ++count;
-        left[static_cast<std::size_t>(start)] = 0;
-        todo.assign(1, start);
-        while (!todo.empty()) {
-            const std::int64_t i = todo.back();
-            todo.pop_back();
-            for (int k = 0; k < 27; ++k) {
-                const int dx = k % 3 - 1, dy = k / 3 % 3 - 1, dz = k / 9 - 1;
-                if (!set && std::abs(dx) + std::abs(dy) + std::abs(dz) != 1) continue;
-                const std::int64_t x = i % nx + dx, y = i / nx % ny + dy, z = i / nx / ny + dz;
-                if (x < 0 || y < 0 || z < 0 || x >= nx || y >= ny || z >= nz) continue;
-                const std::int64_t j = x + nx * (y + ny * z);
-                if (left[static_cast<std::size_t>(j)]) left[static_cast<std::size_t>(j)] = 0, todo.push_back(j);
-            }
-        }
-    }
-    return count;
-}
-
-// Of the union of closed voxels: cubes, faces, edges and corners counted with alternating sign.
-std::int64_t euler_number(const Mask& m)
-{
-    const Shape& s = m.shape();
-    std::int64_t sum = 0;
-    for (std::int64_t z = 0; z <= 2 * s.nz; ++z)
-        for (std::int64_t y = 0; y <= 2 * s.ny; ++y)
-            for (std::int64_t x = 0; x <= 2 * s.nx; ++x) {
-                // Odd coordinates are voxel middles, even ones lie between: the cell is there if a voxel around is.
-                bool there = false;
-                for (int k = 0; k < 8; ++k) {
-                    const auto at = [&](std::int64_t c, int side) { return c % 2 != 0 ? c / 2 : c / 2 - side; };
-                    there |= in(m, at(x, k & 1), at(y, k >> 1 & 1), at(z, k >> 2));
-                }
-                if (there) sum += (x % 2 + y % 2 + z % 2) % 2 == 0 ? 1 : -1;
-            }
-    return sum;
-}
 
 void expect_same_topology(const Mask& before, const Mask& after)
 {
@@ -184,7 +132,7 @@ TEST_F(MedialSurface, OfASphereShellIsAClosedShell)
 
 TEST_F(MedialSurface, IsTheSameOnAnyNumberOfThreads)
 {
-    const Mask noise = random_mask(Shape{70, 40, 30}, 0.85, 12);
+    const Mask noise = random_mask(Shape{150, 90, 75}, 0.3, 12);  // large enough to be shared out
     set_threads(1);
     const Mask one = medial_surface(noise);
     set_threads(2);

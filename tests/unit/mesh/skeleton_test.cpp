@@ -3,6 +3,7 @@
 #include "craze/core/parallel.hpp"
 #include "craze/core/progress.hpp"
 #include "support/masks.hpp"
+#include "support/topology.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,48 +12,18 @@
 namespace craze::mesh {
 namespace {
 
+using support::components_of_slice;
 using support::drawing;
 using support::mask_of;
 using support::random_mask;
 
-// Components of the pixels of slice z that are `in` (8- or 4-connected), by flooding; outside counts as out.
-int components(const Mask& mask, std::int64_t z, bool in, bool eight)
-{
-    const Shape s = mask.shape();
-    const std::int64_t w = s.nx + 2, h = s.ny + 2;
-    std::vector<char> left(static_cast<std::size_t>(w * h), 0);
-    for (std::int64_t y = 0; y < h; ++y)
-        for (std::int64_t x = 0; x < w; ++x) {
-            const bool inside = x > 0 && y > 0 && x <= s.nx && y <= s.ny && mask(x - 1, y - 1, z);
-            left[static_cast<std::size_t>(x + w * y)] = inside == in;
-        }
-    int count = 0;
-    std::vector<std::int64_t> todo;
-    for (std::int64_t start = 0; start < w * h; ++start) {
-        if (!left[static_cast<std::size_t>(start)]) continue;
-        ++count;
-        todo.assign(1, start);
-        left[static_cast<std::size_t>(start)] = 0;
-        while (!todo.empty()) {
-            const std::int64_t at = todo.back();
-            todo.pop_back();
-            for (int dy = -1; dy <= 1; ++dy)
-                for (int dx = -1; dx <= 1; ++dx) {
-                    const std::int64_t x = at % w + dx, y = at / w + dy;
-                    if ((!eight && dx != 0 && dy != 0) || x < 0 || y < 0 || x >= w || y >= h) continue;
-                    auto& there = left[static_cast<std::size_t>(x + w * y)];
-                    if (there) there = 0, todo.push_back(x + w * y);
-                }
-        }
-    }
-    return count;
-}
-
 void expect_same_topology(const Mask& before, const Mask& after, const std::string& what)
 {
     for (std::int64_t z = 0; z < before.shape().nz; ++z) {
-        ASSERT_EQ(components(after, z, true, true), components(before, z, true, true)) << what << ", slice " << z;
-        ASSERT_EQ(components(after, z, false, false), components(before, z, false, false)) << what << ", slice " << z;
+        ASSERT_EQ(components_of_slice(after, z, true, true), components_of_slice(before, z, true, true))
+            << what << ", slice " << z;
+        ASSERT_EQ(components_of_slice(after, z, false, false), components_of_slice(before, z, false, false))
+            << what << ", slice " << z;
     }
 }
 
@@ -83,10 +54,10 @@ TEST_F(Skeleton, OfABarIsItsMiddleLine)
 
 TEST_F(Skeleton, KeepsWhatZhangAndSuensRuleLoses)
 {
-    EXPECT_EQ(components(skeleton_of_slices(drawing({"....", ".##.", ".##.", "...."}), 2), 0, true, true), 1);
+    EXPECT_EQ(components_of_slice(skeleton_of_slices(drawing({"....", ".##.", ".##.", "...."}), 2), 0, true, true), 1);
     const Mask band = drawing({"##......", ".##.....", "..##....", "...##...", "....##..", ".....##.", "......##"});
     const Mask thin = skeleton_of_slices(band, 2);
-    EXPECT_EQ(components(thin, 0, true, true), 1);
+    EXPECT_EQ(components_of_slice(thin, 0, true, true), 1);
     EXPECT_GE(thin.count(), 6);
 }
 
