@@ -1,0 +1,53 @@
+// One coating put through the virtual laboratory: a recipe and a seed in, the paper's numbers out.
+
+#pragma once
+
+#include "craze/domain/room.hpp"
+#include "craze/loading/loading.hpp"
+#include "craze/reproduce/targets.hpp"
+#include "craze/synth/synth.hpp"
+
+namespace craze::reproduce {
+
+/// What is measured, and how.
+struct Study {
+    bool moduli = true;                 ///< Table 3
+    std::int64_t triaxial_points = 15;  ///< points to eta = 1.5 %; 0: none [Fig. 21]
+    std::vector<double> thicknesses;    ///< constant thicknesses, cracks only, m [Fig. 22]
+    std::vector<double> strengths;      ///< sigma_failure, Pa, along x [Table 4]
+    double crossings = 40.0;            ///< duration of fracture loadings, wave crossings
+    double damping = 1.0;
+    /// Let unbonded neighbours push [Eq. 5]. Our reading: off in states of rest. The paper's dense and porous samples
+    /// are linear in compression; with these contacts they stiffen by a tenth (docs/reproduction.md).
+    bool near_contacts = false;
+    bool as_seen = true;       ///< thickness and cuts as a microscope would see them; else as they are
+    double threshold = 111.0;  ///< S that the microscope's gray levels lead to
+    double residual = 1e-5;    ///< of equilibrium
+    domain::Settings domain;
+};
+
+/// A dense domain of the recipe's box and the beams that make it as stiff as the ceramic: shared by all candidates.
+struct Bench {
+    domain::Domain dense;
+    loading::Calibration calibration;
+    double R_DE = 0.0;  ///< m
+};
+/// @param calibrate  false: Table 2's beams
+Bench make_bench(const Vec3& box, const Study& study, std::int64_t seed, bool calibrate);
+
+struct Candidate {
+    domain::Discretisation discretisation;
+    loading::Response response;
+    Numbers numbers;  ///< keys of targets()
+};
+
+/// The recipe with this seed, by the short way.
+Candidate measure(const synth::Settings& recipe, std::int64_t seed, const Bench& bench, const Study& study);
+/// Any discretisation (made from images, say): the same numbers, without porosities.
+Candidate measure(domain::Discretisation discretisation, const Bench& bench, const Study& study);
+
+/// The constant thickness whose P(eta) is nearest to the T2 curve of the cracks-only specimen, m: least squares,
+/// interpolated between the thicknesses tried. 0 where the response has no such curves. [4.2.3]
+double equivalent_thickness(const loading::Response& response, const std::vector<double>& thicknesses);
+
+}  // namespace craze::reproduce
