@@ -1,9 +1,147 @@
+// The command line: parse, call, turn exceptions into exit codes.
+
+#include "craze/core/errors.hpp"
+#include "craze/core/parallel.hpp"
+#include "craze/core/progress.hpp"
 #include "craze/core/version.hpp"
+#include "craze/io/atomic_file.hpp"
+#include "craze/pipeline/pipeline.hpp"
 
-#include <cstdio>
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
-int main()
+#include <unistd.h>
+
+#include <cstdlib>
+#include <exception>
+#include <functional>
+#include <new>
+#include <string>
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace craze;
+
+enum ExitCode { ok = 0, failed = 1, refused = 2, stopped = 130 };
+
+// Idle threads shall sleep instead of burning a core that someone else may need. The OpenMP library reads its wishes
+// when it is loaded, so the program starts itself once more with them set.
+void let_idle_threads_sleep(char** argv)
 {
-    std::printf("craze %s\n", craze::version);
-    return 0;
+    if (std::getenv("OMP_WAIT_POLICY") != nullptr || std::getenv("GOMP_SPINCOUNT") != nullptr) return;
+    setenv("GOMP_SPINCOUNT", "20000", 1);  // some microseconds: cheap between two loops, nothing when waiting
+    execv("/proc/self/exe", argv);         // returns only when it cannot
+}
+
+struct Common {
+    std::string settings, out;
+    std::vector<std::string> set;
+    int threads = 0;
+    bool quiet = false;
+
+    void add_to(CLI::App& verb)
+    {
+        verb.add_option("SETTINGS", settings, "settings file (TOML); 'craze init' writes one")->required();
+        verb.add_option("--out", out, "folder for the results")->default_str("out/<name of the settings file>");
+        verb.add_option("--set", set,
+                        "override one setting: KEY=VALUE, such as images.denoise.search=15; may be repeated")
+            ->allow_extra_args(false);
+        verb.add_option("--threads", threads, "threads to use; 0 means all cores")->check(CLI::Range(0, 4096));
+        verb.add_flag("--quiet", quiet, "print nothing but results and errors");
+    }
+
+    pipeline::Settings read() const
+    {
+        set_threads(threads);
+        set_verbosity(quiet ? Verbosity::quiet : Verbosity::normal);
+        return pipeline::read({settings, set});
+    }
+
+    fs::path folder() const { return out.empty() ? fs::path("out") / fs::path(settings).stem() : fs::path(out); }
+};
+
+int run(int argc, char** argv)
+{
+    CLI::App app(
+        "craze: from microscope images of a porous, cracked ceramic to its mechanical behaviour.\n"
+        "Exit codes: 0 done, 1 a computation failed, 2 wrong input, 130 interrupted.");
+    app.set_version_flag("--version", fmt::format("craze {}", version));
+    app.require_subcommand(1);
+    std::function<void()> work;
+
+    Common common;
+    bool resume = false, sweep = false;
+    auto* run_verb = app.add_subcommand("run", "the whole chain, from images to report");
+    common.add_to(*run_verb);
+    run_verb->add_flag("--resume", resume, "skip rooms whose input and settings have not changed since they were done");
+    run_verb->callback([&] {
+        work = [&] {
+            fmt::print("{}", pipeline::run(common.read(), {common.settings, common.folder(), common.set, resume}));
+        };
+    });
+
+    for (const auto& [name, question] : pipeline::rooms()) {
+        auto* verb = app.add_subcommand(name, fmt::format("only this room: {}", question));
+        common.add_to(*verb);
+        if (name == "microstructure")
+            verb->add_flag("--sweep", sweep, "also try many R_C and R_E, and propose some (table and pictures)");
+        verb->callback([&, name = name] {
+            work = [&, name] {
+                pipeline::run_room(name, common.read(), {common.settings, common.folder(), common.set, false, sweep});
+            };
+        });
+    }
+
+    std::string file;
+    bool force = false;
+    auto* init = app.add_subcommand("init", "write a settings file with every key, its default, range and meaning");
+    init->add_option("FILE", file, "where to write; standard output when left out");
+    init->add_flag("--force", force, "write over a file that is there");
+    init->callback([&] {
+        work = [&] {
+            const std::string text = pipeline::default_settings_text();
+            if (file.empty()) {
+                fmt::print("{}", text);
+                return;
+            }
+            if (fs::exists(file) && !force)
+                throw InvalidInput(fmt::format("{}: is there already; --force writes over it", file));
+            io::write_text(file, text);
+        };
+    });
+    auto* manual = app.add_subcommand("settings", "print the manual of all settings (Markdown)");
+    manual->callback([&] { work = [] { fmt::print("{}", pipeline::settings_reference()); }; });
+
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? ok : refused;
+    }
+    catch_interrupts();
+    work();
+    return ok;
+}
+
+}  // namespace
+
+int main(int argc, char** argv)
+{
+    let_idle_threads_sleep(argv);
+    try {
+        return run(argc, argv);
+    } catch (const InvalidInput& error) {
+        fmt::print(stderr, "craze: {}\n", error.what());
+        return refused;
+    } catch (const Interrupted&) {
+        fmt::print(stderr, "craze: interrupted; finished rooms are kept, --resume goes on from them\n");
+        return stopped;
+    } catch (const std::bad_alloc&) {
+        fmt::print(stderr,
+                   "craze: out of memory; try a smaller crop (images.crop) or fewer elements (domain.mean_radius)\n");
+        return failed;
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "craze: {}\n", error.what());
+        return failed;
+    }
 }

@@ -47,11 +47,11 @@ void make(const fs::path& out)
     microstructure::save(analysis, micro, out / "microstructure");
     write_summary(out / "microstructure", microstructure::summary(micro, analysis));
 
-    const Vec3 box = synth::box_of(recipe);
     const auto surface = mesh::mesh_cracks(micro.crack, recipe.voxel_size, {});
     fs::create_directories(out / "mesh");
-    mesh::save(surface, out / "mesh");
-    write_summary(out / "mesh", mesh::summary(surface, box.x * box.y * box.z));
+    const auto measures = mesh::measure(surface, micro.crack, recipe.voxel_size);
+    mesh::save(surface, measures, {}, out / "mesh");
+    write_summary(out / "mesh", mesh::summary(surface, measures));
 
     const domain::Settings packed;
     const auto cut = domain::discretise(micro, surface, how.R_C, packed);

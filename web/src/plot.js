@@ -24,7 +24,7 @@ function ascending(series) {
 }
 
 function lookOf(series, title) {
-  const look = { label: series.name || title, stroke: series.colour, width: 2, points: { show: false }, spanGaps: false };
+  const look = { pxAlign: 0, label: series.name || title, stroke: series.colour, width: 2, points: { show: false }, spanGaps: false };
   if (series.mark === "dashed") look.dash = [8, 5];
   if (series.mark === "bars") Object.assign(look, { paths: uPlot.paths.stepped({ align: 1 }), fill: series.colour + "55", width: 1 });
   if (series.mark === "points") Object.assign(look, { paths: () => null, points: { show: true, size: 7, fill: series.colour, width: 0 } });
@@ -112,7 +112,7 @@ export function drawPlot(figure, data) {
     const scale = (from, upright) => (from.log ? { time: false, distr: 3, log: 10 } : { time: false, range: range(from, data.guides, upright, bars && !upright) });
     plot = new uPlot(
       {
-        width: stage.clientWidth, height, scales: { x: scale(data.x, true), y: scale(data.y, false) },
+        width: stage.clientWidth, height, pxAlign: 0, scales: { x: scale(data.x, true), y: scale(data.y, false) },
         axes: [axis(data.x, 46), axis(data.y, 62)],
         series: [{ label: data.x.title, value: (_, v) => (v == null ? "–" : String(Number(v.toPrecision(5)))) }, ...data.series.map((s) => lookOf(s, data.y.title))],
         plugins: [guidePlugin(data.guides, soft)],

@@ -39,6 +39,8 @@ public:
         return {members_.data() + begin, end - begin};
     }
 
+    std::span<const std::int32_t> members() const { return members_; }
+
 private:
     std::array<std::int32_t, 3> count_{};
     Vec3 inverse_edge_;

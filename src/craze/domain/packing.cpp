@@ -113,15 +113,15 @@ Vec3 shortest(Vec3 d, const Vec3& box, bool periodic)
     return d;
 }
 
-/// Appends to `list` the members of a row of cells within reach of sphere i.
+/// Appends to `list` the members of a run of cells within reach of sphere i. Spheres lie in the order of members.
 template <bool periodic>
-CRAZE_INLINE void search_row(const Sphere* at, std::int32_t i, const std::int32_t* member, std::size_t members,
-                             double skin, const Vec3& box, std::vector<std::int32_t>& list)
+CRAZE_INLINE std::size_t search(const Sphere* sphere, const std::int32_t* member, std::size_t members, const Sphere& a,
+                                std::int32_t i, double skin, const Vec3& box, std::int32_t* list)
 {
-    const Sphere a = at[i];
     const Vec3 per_box{1.0 / box.x, 1.0 / box.y, 1.0 / box.z};
+    std::size_t found = 0;
     for (std::size_t m = 0; m < members; ++m) {
-        const Sphere& o = at[member[m]];
+        const Sphere& o = sphere[m];
         double dx = o.x - a.x, dy = o.y - a.y, dz = o.z - a.z;
         if constexpr (periodic) {
             dx -= box.x * std::nearbyint(dx * per_box.x);
@@ -129,8 +129,26 @@ CRAZE_INLINE void search_row(const Sphere* at, std::int32_t i, const std::int32_
             dz -= box.z * std::nearbyint(dz * per_box.z);
         }
         const double reach = a.r + o.r + skin;
-        if (dx * dx + dy * dy + dz * dz < reach * reach && member[m] != i) list.push_back(member[m]);
+        // Written always, kept if near: no branch to foresee.
+        list[found] = member[m];
+        found += static_cast<std::size_t>(dx * dx + dy * dy + dz * dz < reach * reach) &
+                 static_cast<std::size_t>(member[m] != i);
     }
+    return found;
+}
+
+CRAZE_MULTIVERSION std::size_t search_walled(const Sphere* sphere, const std::int32_t* member, std::size_t members,
+                                             const Sphere& a, std::int32_t i, double skin, const Vec3& box,
+                                             std::int32_t* list)
+{
+    return search<false>(sphere, member, members, a, i, skin, box, list);
+}
+
+CRAZE_MULTIVERSION std::size_t search_periodic(const Sphere* sphere, const std::int32_t* member, std::size_t members,
+                                               const Sphere& a, std::int32_t i, double skin, const Vec3& box,
+                                               std::int32_t* list)
+{
+    return search<true>(sphere, member, members, a, i, skin, box, list);
 }
 
 /// Neighbours of every element up to `skin` beyond touching.
@@ -140,6 +158,13 @@ void list_neighbours(Packing& p, double r_max, double skin)
     for (std::size_t k = 0; k < p.at.size(); ++k) x[k] = p.at[k].x, y[k] = p.at[k].y, z[k] = p.at[k].z;
     const Cells cells(p.box, 2.0 * r_max + skin, x, y, z);
     const auto n = cells.count();
+    const std::int32_t* const members = cells.members().data();
+    std::vector<Sphere> spheres(p.at.size());
+    parallel_ranges(p.size(), [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t m = begin; m < end; ++m)
+            spheres[static_cast<std::size_t>(m)] = p.at[static_cast<std::size_t>(members[m])];
+    });
+    const auto search_run = p.periodic ? search_periodic : search_walled;
 
     parallel_tasks(p.blocks(), [&](std::int64_t b) {
         auto& list = p.neighbours[static_cast<std::size_t>(b)];
@@ -160,12 +185,11 @@ void list_neighbours(Packing& p, double r_max, double skin)
                 each(ys, [&](std::int32_t cy) {
                     for (std::size_t run = 0; run < static_cast<std::size_t>(xs.count); ++run) {
                         const auto row = cells.row(xs.first[run], xs.last[run], cy, cz);
-                        if (p.periodic)
-                            search_row<true>(p.at.data(), static_cast<std::int32_t>(i), row.data(), row.size(), skin,
-                                             p.box, list);
-                        else
-                            search_row<false>(p.at.data(), static_cast<std::int32_t>(i), row.data(), row.size(), skin,
-                                              p.box, list);
+                        const std::size_t before = list.size();
+                        list.resize(before + row.size());
+                        list.resize(before + search_run(spheres.data() + (row.data() - members), row.data(), row.size(),
+                                                        p.at[k], static_cast<std::int32_t>(i), skin, p.box,
+                                                        list.data() + before));
                     }
                 });
             });
@@ -206,7 +230,7 @@ CRAZE_INLINE Sums block_forces(const Sphere* at, Vec3* velocity, Vec3* force, co
             const double overlap = reach - d, push = overlap / d;
             fx += push * dx, fy += push * dy, fz += push * dz;
             overlaps += overlap;
-            sums.most = std::max(sums.most, overlap);
+            sums.most = std::max(sums.most, overlap / reach);
             ++contacts;
         }
         if constexpr (!periodic) {
@@ -347,6 +371,7 @@ Elements pack_elements(const Vec3& box, const Recipe& recipe, PackingReport* rep
     std::int64_t downhill = 0, iteration = 0, list_age = 0;
     constexpr std::int64_t most_iterations = 20000;
     bool listed = false;
+    // Enough when hardly anything overlaps (median below 0.3 %, all below 2 %), or when nothing moves any more.
     for (; iteration < most_iterations; ++iteration) {
         if (!listed) {
             bring_back(p);
@@ -357,7 +382,7 @@ Elements pack_elements(const Vec3& box, const Recipe& recipe, PackingReport* rep
         const Sums s = forces(p);
         const double mean_overlap = s.overlap / static_cast<double>(std::max<std::int64_t>(s.contacts, 1));
         residual = std::sqrt(s.force2 / static_cast<double>(n)) / std::max(mean_overlap, 1e-9);
-        if (residual < 1e-2 || (mean_overlap < 0.0069 && s.most < 0.039 && residual < 0.1)) break;
+        if (residual < 1e-2 || (mean_overlap < 0.0069 && s.most < 0.0196 && residual < 0.1)) break;
         if (iteration % 16 == 0) check_interrupt();
         double keep = 0.0, steer = dt;
         if (s.power > 0.0) {

@@ -20,12 +20,35 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// Adds the cracks of the images to those that the pairs bring.
 void cut(PairCracks& cracks, const Elements& elements, std::span<const std::int32_t> i, std::span<const std::int32_t> j,
          double R_B, const microstructure::Microstructure& micro, const mesh::CrackSurface& surface, const Settings& s)
 {
-    cracks.cut = s.cut_by == CutBy::surface ? triangles_met(elements, i, j, surface)
-                                            : crack_voxel_runs_met(elements, i, j, micro.crack, micro.gray.voxel_size);
-    measure_thickness(cracks, elements, i, j, R_B, micro, s.counted);
+    PairCracks found;
+    found.cut = s.cut_by == CutBy::surface ? triangles_met(elements, i, j, surface)
+                                           : crack_voxel_runs_met(elements, i, j, micro.crack, micro.gray.voxel_size);
+    measure_thickness(found, elements, i, j, R_B, micro, s.counted);
+    for (std::size_t p = 0; p < i.size(); ++p) {
+        if (found.cut[p] == 0) continue;
+        cracks.cut[p] = found.cut[p];
+        cracks.T1[p] = found.T1[p];
+        cracks.T2[p] = found.T2[p];
+    }
+}
+
+Source source(const Settings& s)
+{
+    Source from;
+    from.elements = s.import_from.elements;
+    from.bonds = s.import_from.bonds;
+    from.near = s.import_from.near;
+    from.format = s.import_from.format;
+    from.unit = s.import_from.unit;
+    if (s.import_from.box.size() == 3)
+        from.box = Vec3{s.import_from.box[0], s.import_from.box[1], s.import_from.box[2]};
+    from.mean_radius = s.mean_radius;
+    from.bonding = {s.cardinality, s.near_gap};
+    return from;
 }
 
 }  // namespace
@@ -62,14 +85,41 @@ Discretisation discretise(const microstructure::Microstructure& micro, const mes
             fmt::format("domain: R_DE = {} is smaller than R_C = {}: cracks may be thicker than bonds are long; their "
                         "thickness is then bounded to L_0 [Eqs. 9, 10]",
                         format_quantity(mean_radius, Dimension::length), format_quantity(R_C * h, Dimension::length)));
+    if (!s.import_from.elements.empty()) {
+        Settings in_the_stack = s;
+        if (s.import_from.box.empty()) in_the_stack.import_from.box = {box.x, box.y, box.z};
+        return discretise(read_domain(source(in_the_stack)), micro, surface, s);
+    }
     return discretise(pack(box, mean_radius, s), micro, surface, s);
 }
 
-Discretisation discretise(Domain dense, const microstructure::Microstructure& micro, const mesh::CrackSurface& surface,
-                          const Settings& s)
+Discretisation as_discretisation(Domain domain)
 {
     Discretisation d;
-    d.dense = std::move(dense);
+    d.in_pore.assign(domain.elements.r.size(), 0);
+    d.bonds.T1 = d.bonds.T2 = domain.bonds.thickness;
+    for (BondKind& kind : domain.bonds.kind) {
+        d.bonds.cut.push_back(kind == BondKind::contact_beam);
+        kind = BondKind::beam;
+    }
+    d.near.T1 = d.near.T2 = domain.near.thickness;
+    for (const double T : domain.near.thickness) d.near.cut.push_back(T > 0.0);
+    domain.bonds.thickness.assign(domain.bonds.i.size(), 0.0);
+    domain.near.thickness.assign(domain.near.i.size(), 0.0);
+    d.dense = std::move(domain);
+    return d;
+}
+
+Discretisation import_domain(const Settings& s)
+{
+    check(s);
+    return as_discretisation(read_domain(source(s)));
+}
+
+Discretisation discretise(Domain domain, const microstructure::Microstructure& micro, const mesh::CrackSurface& surface,
+                          const Settings& s)
+{
+    Discretisation d = as_discretisation(std::move(domain));
     const double h = micro.gray.voxel_size, R_B = s.r_tilde * d.dense.mean_radius;
     const Shape& n = micro.pore.shape();
     d.in_pore = carve(d.dense.elements, micro.pore, h);
@@ -81,9 +131,12 @@ Discretisation discretise(Domain dense, const microstructure::Microstructure& mi
     return d;
 }
 
-void save(const Discretisation& discretisation, const Settings&, const fs::path& folder)
+void save(const Discretisation& discretisation, const Settings& s, const fs::path& folder)
 {
     write_vtkhdf(discretisation, folder / "domain.vtkhdf");
+    if (s.write.empty()) return;
+    const Domain specimen = with_defects(discretisation, {});
+    for (const std::string& format : s.write) write_domain(specimen, format, folder / "specimen" / format);
 }
 
 Discretisation load_discretisation(const fs::path& folder)

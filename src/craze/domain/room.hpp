@@ -5,6 +5,7 @@
 #include "craze/core/json_fwd.hpp"
 #include "craze/core/schema.hpp"
 #include "craze/domain/discretisation.hpp"
+#include "craze/domain/files.hpp"
 #include "craze/domain/packing.hpp"
 #include "craze/domain/pairs.hpp"
 #include "craze/domain/thickness.hpp"
@@ -43,6 +44,17 @@ struct Settings {
     CutBy cut_by = CutBy::surface;
     CountedVoid counted = CountedVoid::crack;
     double r_tilde = 0.345;  ///< R_B / R_DE of the cylinders in which cracks are measured [Eq. 3]
+
+    /// A packing made elsewhere, instead of one made here (files.hpp).
+    struct Import {
+        std::string elements;  ///< file; empty: pack
+        std::string bonds;     ///< file, for formats with two; empty: bonds are made
+        std::string near;      ///< file; empty: near pairs are found
+        std::string format = "auto";
+        double unit = 1.0;        ///< m: one of the file's lengths
+        std::vector<double> box;  ///< three edges, m; empty: as the file says, else around the elements
+    } import_from;
+    std::vector<std::string> write;  ///< formats to write the cracked, porous domain in
 };
 
 void describe(Schema& schema, Settings& settings);
@@ -56,12 +68,18 @@ Recipe recipe(const Settings& settings, double mean_radius);
 /// A dense, bonded domain of the settings' recipe in a box of edges `box` (m).
 Domain pack(const Vec3& box, double mean_radius, const Settings& settings);
 
-/// The dense domain in the box of the stack, and which of its elements and bonds the defects take.
+/// The domain that `settings.import_from` names, without images: its contact beams are its cut bonds.
+/// @throws InvalidInput  as read_domain does
+Discretisation import_domain(const Settings& settings);
+/// The same for a domain at hand: no element in a pore, contact beams cut with T1 = T2 = T.
+Discretisation as_discretisation(Domain domain);
+
+/// The dense domain in the box of the stack, packed or imported, and which of its elements and bonds the defects take.
 /// @param R_C  closing radius of the microstructure, px: R_DE = R_C unless the settings say otherwise [Eq. 11]
 Discretisation discretise(const microstructure::Microstructure& micro, const mesh::CrackSurface& surface, double R_C,
                           const Settings& settings);
-/// The same for a dense domain made elsewhere.
-Discretisation discretise(Domain dense, const microstructure::Microstructure& micro, const mesh::CrackSurface& surface,
+/// The same for a domain at hand. Contact beams that it brings stay cut, by their own T unless a crack cuts them here.
+Discretisation discretise(Domain domain, const microstructure::Microstructure& micro, const mesh::CrackSurface& surface,
                           const Settings& settings);
 
 /// Writes domain.vtkhdf (dense, with what the defects take) and the formats asked for into `folder`.

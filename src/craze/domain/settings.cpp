@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace craze::domain {
 
@@ -25,6 +27,18 @@ void describe(Schema& schema, Settings& s)
                   "void that counts as crack opening in a bond: voxels of cracks, or all void [Eqs. 14, 15]");
     schema.number("r_tilde", s.r_tilde, {0.01, 1.0},
                   "radius over R_DE of the cylinder in which a bond's crack is measured [Eq. 3]");
+    schema.texts("write", s.write,
+                 "write the porous, cracked domain too: csv, lammps, lammps_hybrid, yade, vtkhdf (folder specimen)");
+    schema.group("import", "a packing made elsewhere instead of one made here", [&] {
+        auto& from = s.import_from;
+        schema.path("elements", from.elements, "file of x, y, z, r; empty: pack");
+        schema.path("bonds", from.bonds, "file of i, j (kind, T); empty: bonds are made from the elements");
+        schema.path("near", from.near, "file of i, j, T of unbonded pairs; empty: they are found");
+        schema.text("format", from.format, "auto, csv, lammps, yade, listing or vtkhdf");
+        schema.quantity("unit", from.unit, Dimension::length, {1e-12, 1e3}, "what one of the file's lengths is");
+        schema.quantities("box", from.box, Dimension::length, {1e-10, 1e3},
+                          "three edges; empty: the stack's, else the file's, else around the elements");
+    });
 }
 
 void check(const Settings& s)
@@ -39,6 +53,25 @@ void check(const Settings& s)
     needs(s.density >= 0.0 && s.density <= 0.3, "density", "0 to 0.3 elements per R_DE^3", s.density);
     needs(s.cardinality >= 1.0 && s.cardinality <= 12.0, "cardinality", "1 to 12", s.cardinality);
     needs(s.near_gap >= 0.0 && s.near_gap <= 1.0, "near_gap", "0 to 1", s.near_gap);
+    const auto& from = s.import_from;
+    if (!from.box.empty() && from.box.size() != 3)
+        throw InvalidInput(fmt::format("domain.import.box: needs three edges, got {}", from.box.size()));
+    needs(from.unit > 0.0 && std::isfinite(from.unit), "import.unit", "a positive length", from.unit);
+    for (const auto& [key, file] : {std::pair{"elements", from.elements}, {"bonds", from.bonds}, {"near", from.near}})
+        if (!file.empty() && !std::filesystem::is_regular_file(file))
+            throw InvalidInput(fmt::format("domain.import.{}: {} is not there", key, file));
+    if (from.elements.empty() && !(from.bonds.empty() && from.near.empty()))
+        throw InvalidInput("domain.import: bonds or near pairs need elements; set domain.import.elements");
+    std::vector<std::string> readable = written_formats();
+    readable.insert(readable.end(), {"auto", "listing"});
+    const auto known = [](const char* key, const std::string& name, const std::vector<std::string>& names) {
+        if (std::ranges::find(names, name) != names.end()) return;
+        const std::string nearest = nearest_name(name, names.data(), names.data() + names.size());
+        throw InvalidInput(fmt::format("domain.{}: \"{}\" is unknown; there is {}{}", key, name, fmt::join(names, ", "),
+                                       nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest)));
+    };
+    known("import.format", from.format, readable);
+    for (const std::string& format : s.write) known("write", format, written_formats());
     needs(s.r_tilde > 0.0 && s.r_tilde <= 1.0, "r_tilde", "more than 0, at most 1", s.r_tilde);
 }
 

@@ -97,8 +97,9 @@ void Hdf5File::write(const std::string& name, std::span<const T> values, std::in
     const Owned space(H5Screate_simple(columns == 1 ? 1 : 2, shape.data(), nullptr), H5Sclose);
     const Owned links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
     H5Pset_create_intermediate_group(links, 1);
-    const Owned data(H5Dcreate2(handle_->file, name.c_str(), type_of<T>(), space, links, H5P_DEFAULT, H5P_DEFAULT),
-                     H5Dclose);
+    const Owned plan(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    H5Pset_obj_track_times(plan, false);  // the same content gives the same bytes, whenever it is written
+    const Owned data(H5Dcreate2(handle_->file, name.c_str(), type_of<T>(), space, links, plan, H5P_DEFAULT), H5Dclose);
     handle_->must(data >= 0, name);
     if (!values.empty())
         handle_->must(H5Dwrite(data, type_of<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0, name);

@@ -25,7 +25,7 @@ UnilateralContacts unilateral_contacts(const Lattice& lattice, std::span<const d
         const bool bond_first =
             p == n || (b < m && (lattice.i[b] < free.i[p] || (lattice.i[b] == free.i[p] && lattice.j[b] <= free.j[p])));
         if (!bond_first) {
-            if (!holding.holds(free.i[p], free.j[p], kind))
+            if (holding.parted(free.i[p], free.j[p], free.cut[p] != 0, kind))
                 add(free.i[p], free.j[p], {free.tx[p], free.ty[p], free.tz[p]}, lattice.contact_stiffness, free.gap[p],
                     false);
             ++p;

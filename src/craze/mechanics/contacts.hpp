@@ -21,7 +21,7 @@ struct UnilateralContacts {
 
     std::int64_t size() const { return std::ssize(i); }
 };
-/// Contact beams, and if `free_contacts` the near pairs that no third element holds together (Holding).
+/// Contact beams, and if `free_contacts` the near pairs that have parted (Holding).
 UnilateralContacts unilateral_contacts(const Lattice& lattice, std::span<const domain::BondKind> kind,
                                        bool free_contacts);
 

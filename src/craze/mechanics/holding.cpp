@@ -3,7 +3,7 @@
 namespace craze::mechanics {
 
 Holding::Holding(const Lattice& lattice)
-    : first_(lattice.r.size() + 1, 0), other_(2 * lattice.i.size()), bond_(2 * lattice.i.size())
+    : lattice_(lattice), first_(lattice.r.size() + 1, 0), other_(2 * lattice.i.size()), bond_(2 * lattice.i.size())
 {
     const std::int32_t m = lattice.bonds();
     for (std::size_t b = 0; b < lattice.i.size(); ++b)
@@ -19,6 +19,15 @@ Holding::Holding(const Lattice& lattice)
         put(lattice.j[static_cast<std::size_t>(b)], lattice.i[static_cast<std::size_t>(b)], b);
     for (std::int32_t b = 0; b < m; ++b)
         put(lattice.i[static_cast<std::size_t>(b)], lattice.j[static_cast<std::size_t>(b)], b);
+}
+
+bool Holding::has_lost_a_beam(std::int32_t e, std::span<const domain::BondKind> kind) const
+{
+    for (std::int32_t s = first_[static_cast<std::size_t>(e)]; s < first_[static_cast<std::size_t>(e) + 1]; ++s) {
+        const auto b = static_cast<std::size_t>(bond_[static_cast<std::size_t>(s)]);
+        if (kind[b] != lattice_.kind[b]) return true;
+    }
+    return false;
 }
 
 bool Holding::holds(std::int32_t i, std::int32_t j, std::span<const domain::BondKind> kind) const

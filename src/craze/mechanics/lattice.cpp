@@ -116,6 +116,7 @@ Lattice make_lattice(const domain::Domain& domain, const BeamMaterial& material,
         free.tx.push_back(t.x), free.ty.push_back(t.y), free.tz.push_back(t.z);
         free.distance.push_back(d_0);
         free.gap.push_back(d_0 - contact_distance(r_1, r_2, d_0, T));
+        free.cut.push_back(T > 0.0);
     }
     return lattice;
 }

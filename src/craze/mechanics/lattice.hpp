@@ -17,6 +17,7 @@ struct FreeContacts {
     std::vector<double> tx, ty, tz;  ///< unit vector i -> j at rest
     std::vector<double> distance;    ///< d_0, of the centres at rest, m
     std::vector<double> gap;         ///< d_0 - contact_distance(...), m, >= 0
+    std::vector<std::uint8_t> cut;   ///< 1: a crack runs between them
 
     std::int32_t size() const { return static_cast<std::int32_t>(i.size()); }
 };

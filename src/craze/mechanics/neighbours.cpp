@@ -41,6 +41,7 @@ void Pairs::add(const Pairs& from, std::size_t p)
     i.push_back(from.i[p]), j.push_back(from.j[p]);
     dx.push_back(from.dx[p]), dy.push_back(from.dy[p]), dz.push_back(from.dz[p]);
     distance.push_back(from.distance[p]), limit.push_back(from.limit[p]);
+    cut.push_back(from.cut[p]);
 }
 
 Neighbours::Neighbours(const Lattice& lattice, Geometry geometry)
@@ -97,6 +98,7 @@ void Neighbours::search(std::span<const double> pose)
             near_.i.push_back(free.i[p]), near_.j.push_back(free.j[p]);
             near_.dx.push_back(d * free.tx[p]), near_.dy.push_back(d * free.ty[p]), near_.dz.push_back(d * free.tz[p]);
             near_.distance.push_back(d), near_.limit.push_back(d - free.gap[p]);
+            near_.cut.push_back(free.cut[p]);
         }
         return;
     }
@@ -172,6 +174,7 @@ void Neighbours::search(std::span<const double> pose)
                 mine.i.push_back(e), mine.j.push_back(o);
                 mine.dx.push_back(d.x), mine.dy.push_back(d.y), mine.dz.push_back(d.z);
                 mine.distance.push_back(d_0), mine.limit.push_back(limit);
+                mine.cut.push_back(known ? free.cut[static_cast<std::size_t>(hit - free.j.begin())] : 1);
             }
         }
     });
@@ -179,13 +182,13 @@ void Neighbours::search(std::span<const double> pose)
         for (std::size_t p = 0; p < part.i.size(); ++p) near_.add(part, p);
 }
 
-/// The near pairs whose gap is less than the skin and that nothing holds together.
+/// The near pairs whose gap is less than the skin and that have parted.
 void Neighbours::choose(std::span<const double> pose, std::span<const domain::BondKind> kind)
 {
     active_ = {};
     for (std::size_t p = 0; p < near_.i.size(); ++p)
         if (apart(near_, p, geometry_, pose.data()).d < near_.limit[p] + skin_ &&
-            !holding_.holds(near_.i[p], near_.j[p], kind))
+            holding_.parted(near_.i[p], near_.j[p], near_.cut[p] != 0, kind))
             active_.add(near_, p);
 }
 

@@ -18,6 +18,7 @@ struct Pairs {
     std::vector<double> dx, dy, dz;  ///< from centre i to centre j at rest, m
     std::vector<double> distance;    ///< |d|, m
     std::vector<double> limit;       ///< contact distance, m
+    std::vector<std::uint8_t> cut;   ///< 1: a crack runs between them, or they were no neighbours at rest
 
     std::int64_t size() const { return std::ssize(i); }
     void add(const Pairs& from, std::size_t p);
@@ -25,7 +26,7 @@ struct Pairs {
 
 /// Keeps the pairs that may touch: all near ones, searched anew when elements have moved far, and of these the few
 /// whose gap is small, chosen anew when elements have moved a little. In small displacements the pairs are the
-/// lattice's. Pairs that a third element holds together (Holding) are left out until they are parted.
+/// lattice's. Only pairs that have parted (Holding) are active.
 class Neighbours {
 public:
     Neighbours(const Lattice& lattice, Geometry geometry);

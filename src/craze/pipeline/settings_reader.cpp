@@ -239,7 +239,10 @@ private:
         if (node == nullptr) return;
         guarded(*node, key, [&] {
             const toml::array* array = node->as_array();
-            if (array == nullptr) throw InvalidInput(fmt::format("needs a list [...], got {}", shown(*node)));
+            if (array == nullptr) {  // one value is a list of one
+                values = {read(*node)};
+                return;
+            }
             std::vector<Value> got;
             for (const toml::node& entry : *array) got.push_back(read(entry));
             values = std::move(got);

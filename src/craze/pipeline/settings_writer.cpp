@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 namespace craze::pipeline {
 
@@ -90,18 +91,32 @@ public:
     void group(std::string_view key, std::string_view meaning, const std::function<void()>& describe) override
     {
         sections_.emplace_back(key);
-        section(meaning, false);
-        describe();
+        apart([&] {
+            section(meaning, false);
+            describe();
+        });
         sections_.pop_back();
     }
 
-    std::string out;
+    std::string text() { return std::exchange(out, {}) + std::exchange(after_, {}); }
 
 protected:
     virtual void entry(std::string_view key, const std::string& value, std::string_view meaning,
                        const std::string& may_be) = 0;
     virtual void section(std::string_view meaning, bool of_list) = 0;
     std::string section_path() const { return fmt::format("{}", fmt::join(sections_, ".")); }
+    // A section's own keys must stand before its subsections, in whatever order a room describes them.
+    template <class Write>
+    void apart(Write&& write)
+    {
+        std::string own = std::exchange(out, {}), after = std::exchange(after_, {});
+        write();
+        after += out + after_;
+        out = std::move(own);
+        after_ = std::move(after);
+    }
+
+    std::string out, after_;
     std::vector<std::string> sections_;
 };
 
@@ -111,10 +126,11 @@ public:
               const std::function<void(std::size_t)>& item) override
     {
         sections_.emplace_back(key);
-        for (std::size_t i = 0; i < size; ++i) {
-            section(meaning, true);
-            item(i);
-        }
+        for (std::size_t i = 0; i < size; ++i)
+            apart([&] {
+                section(meaning, true);
+                item(i);
+            });
         sections_.pop_back();
     }
 
@@ -137,9 +153,11 @@ public:
               const std::function<void(std::size_t)>& resize, const std::function<void(std::size_t)>& item) override
     {
         sections_.emplace_back(key);
-        section(meaning, true);
         if (size == 0) resize(1);
-        item(0);
+        apart([&] {
+            section(meaning, true);
+            item(0);
+        });
         if (size == 0) resize(0);
         sections_.pop_back();
     }
@@ -224,14 +242,14 @@ std::string write_settings(const Describe& describe)
 {
     FileText text;
     describe(text);
-    return text.out;
+    return text.text();
 }
 
 std::string settings_manual(const Describe& describe)
 {
     ManualText text;
     describe(text);
-    return text.out;
+    return text.text();
 }
 
 Json settings_json(const Describe& describe, bool with_paths)

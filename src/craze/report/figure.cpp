@@ -115,7 +115,7 @@ std::string csv(const Rose& rose)
     double sum = 0.0;
     for (const double v : rose.share) sum += v;
     for (std::size_t i = 0; i < rose.share.size(); ++i)
-        out += fmt::format("\n{:.6g},{:.6g}", static_cast<double>(i) * width,
+        out += fmt::format("\n{:.6g},{:.6g}", rose.first_degrees + static_cast<double>(i) * width,
                            sum > 0.0 ? 100.0 * rose.share[i] / sum : 0.0);
     return out + "\n";
 }

@@ -65,7 +65,8 @@ std::string palette(int index);
 /// A rose of directions over 180 or 360 degrees: petals of equal width whose area shows the share.
 struct Rose {
     std::string id, caption, paper;
-    std::vector<double> share;    ///< one value per petal, >= 0; the first petal is centred on 0 degrees
+    std::vector<double> share;    ///< one value per petal, >= 0
+    double first_degrees = 0.0;   ///< the middle of the first petal
     double span_degrees = 180.0;  ///< 180: axes without a head, drawn twice
     std::string east, north;      ///< what 0 and 90 degrees mean: "x", "y"
 };

@@ -2,6 +2,7 @@
 
 #include "craze/core/json.hpp"
 #include "craze/core/progress.hpp"
+#include "craze/io/atomic_file.hpp"
 #include "craze/mesh/mesh.hpp"
 #include "craze/report/decimate.hpp"
 #include "craze/report/render.hpp"
@@ -34,80 +35,93 @@ Vec3 box_of(const OutputFolder& folder, const mesh::CrackSurface& surface)
     return box;
 }
 
-struct Facet {
-    Vec3 normal;  // unit
-    double area;  // m2, of the crack it stands for
-};
-
-std::vector<Facet> facets_of(const mesh::CrackSurface& surface)
-{
-    std::vector<Facet> out;
-    out.reserve(surface.triangles.size());
-    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-        const auto at = [&](std::size_t k) {
-            return surface.vertices[static_cast<std::size_t>(surface.triangles[t][k])];
-        };
-        const Vec3 n = cross(at(1) - at(0), at(2) - at(0));
-        const double twice = norm(n);
-        if (!(twice > 0.0)) continue;
-        const double sides = surface.sides.empty() ? 2.0 : static_cast<double>(surface.sides[t]);
-        out.push_back({n / twice, 0.25 * sides * twice});
-    }
-    return out;
-}
-
 /// Area over the angle between normal and z, beside what no preferred direction would give.
-Figure inclination(const std::vector<Facet>& facets)
+Figure inclination(const CsvColumns& poles)
 {
     constexpr int bins = 18;
-    std::vector<double> edges, share(bins, 0.0), centres, isotropic;
-    double all = 0.0;
-    for (const auto& f : facets) {
-        const double angle = std::acos(std::min(1.0, std::abs(f.normal.z))) * 180.0 / std::numbers::pi;
-        share[static_cast<std::size_t>(std::min(bins - 1, static_cast<int>(angle / 90.0 * bins)))] += f.area;
-        all += f.area;
+    const auto from = poles.numbers("cos_from"), to = poles.numbers("cos_to"), share = poles.numbers("share");
+    const auto degrees = [](double cosine) {
+        return std::acos(std::clamp(cosine, 0.0, 1.0)) * 180.0 / std::numbers::pi;
+    };
+    Series cracks{"cracks", {}, {}, Mark::bars, 1};
+    // Rings of equal area on the sphere: without a preferred direction each holds the same share.
+    for (std::size_t k = 0; k < share.size(); ++k) {
+        if (k == 0 || from[k] != from[k - 1]) {
+            if (cracks.x.empty()) cracks.x.push_back(degrees(to[k]));
+            cracks.x.push_back(degrees(from[k])), cracks.y.push_back(0.0);
+        }
+        cracks.y.back() += 100.0 * share[k] / (cracks.x[cracks.x.size() - 1] - cracks.x[cracks.x.size() - 2]);
     }
-    for (int k = 0; k <= bins; ++k) edges.push_back(90.0 * k / bins);
-    for (int k = 0; k < bins; ++k) {
-        share[static_cast<std::size_t>(k)] *= 100.0 / all;
-        centres.push_back(90.0 * (k + 0.5) / bins);
-        const auto cosine = [](double degrees) { return std::cos(degrees * std::numbers::pi / 180.0); };
-        isotropic.push_back(100.0 * (cosine(90.0 * k / bins) - cosine(90.0 * (k + 1) / bins)));
+    Series isotropic{"no preferred direction", {}, {}, Mark::dashed, 6};
+    for (int k = 0; k <= bins; ++k) {
+        isotropic.x.push_back(90.0 * k / bins);
+        isotropic.y.push_back(100.0 * std::sin(isotropic.x.back() * std::numbers::pi / 180.0) * std::numbers::pi /
+                              180.0);
     }
     Figure f;
     f.id = "crack_inclination";
     f.caption =
-        "Crack area over the angle between its normal and z: 0° cracks lie across z (between splats), 90° cracks stand "
-        "along z (through "
+        "Crack area over the angle between its normal and z: near 0° cracks lie across z (between splats), near 90° "
+        "they stand along z (through "
         "splats).";
     f.x = {"angle between normal and z [°]", false, 0.0, 90.0};
-    f.y = {"share of crack area [%]", false, 0.0};
-    f.series = {{"cracks", edges, share, Mark::bars, 1},
-                {"no preferred direction", centres, isotropic, Mark::dashed, 6}};
+    f.y = {"crack area per degree [%]", false, 0.0};
+    f.series = {std::move(cracks), std::move(isotropic)};
     return f;
 }
 
-/// Directions of the lines along which cracks cut a plane across `axis`, weighted by their length.
-Rose trace_rose(const std::vector<Facet>& facets, int axis)
+void roses(Work& work)
 {
-    constexpr std::size_t petals = 18;
-    const int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
-    Rose rose;
-    rose.id = fmt::format("crack_rose_{}", "xyz"[axis]);
-    rose.caption = fmt::format(
-        "Directions of crack traces in planes across {}; petal area is the share of trace length.", "xyz"[axis]);
-    rose.east = std::string(1, "xyz"[u]), rose.north = std::string(1, "xyz"[v]);
-    rose.share.assign(petals, 0.0);
-    for (const auto& f : facets) {
-        const double length = std::hypot(f.normal[u], f.normal[v]);
-        if (!(length > 0.0)) continue;
-        double angle = std::atan2(f.normal[u], -f.normal[v]);  // of the trace, which is normal to the normal
-        if (angle < 0.0) angle += std::numbers::pi;
-        const auto petal =
-            static_cast<std::size_t>(std::lround(angle / std::numbers::pi * static_cast<double>(petals))) % petals;
-        rose.share[petal] += f.area * length;
+    const auto csv = work.folder.csv("mesh", "rose.csv");
+    if (!csv) return;
+    for (int axis = 2; axis >= 0; --axis) {
+        const char name = "xyz"[axis];
+        Rose rose;
+        rose.id = fmt::format("crack_rose_{}", name);
+        rose.caption = fmt::format(
+            "Directions of the lines that cracks draw on sections across {}; a petal's area is its share of their "
+            "length.",
+            name);
+        rose.share = csv->numbers(fmt::format("section_{}", name));
+        rose.first_degrees = 0.5 * rose.span_degrees / static_cast<double>(std::max<std::size_t>(1, rose.share.size()));
+        rose.east = axis == 0 ? "y" : "x", rose.north = axis == 2 ? "y" : "z";
+        work.page.figure(rose);
     }
-    return rose;
+}
+
+void openings(Work& work)
+{
+    const auto csv = work.folder.csv("mesh", "openings.csv");
+    if (!csv) return;
+    auto edges = over(csv->numbers("opening_from_m"), 1e-9);
+    edges.push_back(csv->numbers("opening_to_m").back() / 1e-9);
+    Figure f;
+    f.id = "crack_openings";
+    f.caption = "Opening of the cracks in the voxels, by area: chords along the smoothed normal.";
+    f.x.title = "opening [nm]";
+    f.y.title = "share of crack area [%]";
+    f.series = {{"", edges, over(csv->numbers("share"), 0.01), Mark::bars, 1}};
+    work.page.figure(f);
+}
+
+void single_cracks(Work& work)
+{
+    const auto csv = work.folder.csv("mesh", "cracks.csv");
+    if (!csv) return;
+    const auto radii = csv->numbers("radius_m"), areas = csv->numbers("area_m2");
+    double all = 0.0;
+    for (const double a : areas) all += a;
+    if (!(all > 0.0)) return;
+    Figure f;
+    f.id = "crack_sizes";
+    f.caption =
+        fmt::format("Single cracks by the radius of the disc of the same area: {} of them; bars weigh them by area.",
+                    format_number(static_cast<double>(radii.size()), 9));
+    f.x.title = "radius a [µm]";
+    f.y.title = "share of crack area [%]";
+    f.series = {histogram("", radii, over(areas, 0.01 * all), 1e-6)};
+    f.series.front().colour = 1;
+    work.page.figure(f);
 }
 
 }  // namespace
@@ -121,7 +135,6 @@ void write_mesh(Work& work)
         end_room(work, "mesh");
         return;
     }
-    const auto facets = facets_of(surface);
     if (work.settings.scenes) {
         const Vec3 box = box_of(work.folder, surface);
         const auto shown = decimated(surface, work.settings.triangles);
@@ -143,8 +156,14 @@ void write_mesh(Work& work)
                          caption, still, work.figure("Fig. 8"));
     }
     work.page.add("<div class=\"row\">");
-    work.page.figure(inclination(facets));
-    for (int axis = 2; axis >= 0; --axis) work.page.figure(trace_rose(facets, axis));
+    if (const auto poles = work.folder.csv("mesh", "pole_figure.csv")) work.page.figure(inclination(*poles));
+    openings(work);
+    single_cracks(work);
+    roses(work);
+    if (const auto file = work.folder.room("mesh") / "pole_figure.png"; std::filesystem::is_regular_file(file))
+        work.page.picture("crack_poles", io::read_text(file),
+                          "Normals of the crack surface seen along z, equal-area projection: z in the middle, x to the "
+                          "right, y up; darker is more.");
     work.page.add("</div>");
     end_room(work, "mesh");
 }

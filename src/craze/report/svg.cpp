@@ -229,11 +229,12 @@ std::string svg(const Rose& rose)
             "stroke-opacity=\".25\"/>\n",
             centre, reach * std::sqrt(ring));
     const double step = rose.span_degrees / static_cast<double>(petals) * std::numbers::pi / 180.0;
+    const double first = rose.first_degrees * std::numbers::pi / 180.0;
     const auto turns = static_cast<std::size_t>(std::lround(360.0 / rose.span_degrees));
     std::string path;
     for (std::size_t k = 0; most > 0.0 && k < petals * turns; ++k) {
-        const double r = reach * std::sqrt(rose.share[k % petals] / most), a = (static_cast<double>(k) - 0.5) * step,
-                     b = a + step;
+        const double r = reach * std::sqrt(rose.share[k % petals] / most),
+                     a = first + (static_cast<double>(k) - 0.5) * step, b = a + step;
         path += fmt::format("M{0} {0}L{1:.2f} {2:.2f}A{3:.2f} {3:.2f} 0 0 0 {4:.2f} {5:.2f}Z", centre,
                             centre + r * std::cos(a), centre - r * std::sin(a), r, centre + r * std::cos(b),
                             centre - r * std::sin(b));

@@ -30,9 +30,24 @@ TEST(Holding, AThirdElementHoldsTwoOthersUntilABeamBreaks)
     EXPECT_TRUE(holding.holds(0, 2, kind));
     EXPECT_TRUE(holding.holds(2, 0, kind));
     EXPECT_EQ(unilateral_contacts(lattice, kind, true).size(), 0);
+    EXPECT_FALSE(holding.parted(0, 2, true, kind)) << "held at the tip of a crack";
     kind[1] = BondKind::contact_beam;
     EXPECT_FALSE(holding.holds(0, 2, kind));
+    EXPECT_TRUE(holding.parted(0, 2, false, kind)) << "2 has lost a beam";
     EXPECT_EQ(unilateral_contacts(lattice, kind, true).size(), 2) << "the broken beam and the free contact";
+}
+
+TEST(Holding, ElementsWithoutACommonOneTouchAcrossACrackOnly)
+{
+    auto d = support::bonded({9, 3, 3}, {{0, 0, 0}, {2, 0, 0}, {4, 0, 0}, {6, 0, 0}}, {1, 1, 1, 1}, {{0, 1}, {2, 3}});
+    d.near.i = {1};
+    d.near.j = {2};
+    d.near.thickness = {0.0};
+    const Lattice whole = make_lattice(d, {});
+    EXPECT_EQ(unilateral_contacts(whole, whole.kind, true).size(), 0) << "nothing has parted them";
+    d.near.thickness = {0.1};
+    const Lattice cracked = make_lattice(d, {});
+    EXPECT_EQ(unilateral_contacts(cracked, cracked.kind, true).size(), 1);
 }
 
 TEST(Holding, AgreesWithBruteForceOnARandomGraph)

@@ -79,12 +79,7 @@ TEST(SettingsFile, WrittenAndReadAgainIsTheSame)
     s.voxel_size = 1e-9 / 3.0;
     s.sigma = 12.5;
     s.lenses = {Lens{1e-7, 1}, Lens{3e-7, 2}};
-    // Top-level keys must stand before the first section in a file; rooms only make groups, so split by hand here.
-    std::string text = write_settings(s.describe());
-    const auto tail = text.find("# thicknesses");
-    const auto lens = text.find("\n# a population");
-    text = text.substr(tail, lens - tail) + text.substr(0, tail) + text.substr(lens);
-
+    const std::string text = write_settings(s.describe());
     Everything t;
     read_settings_text(text, "file.toml", {}, t.describe());
     t.source = s.source;
@@ -119,6 +114,14 @@ TEST(SettingsFile, RefusalsNameFileLineKeyNeedAndNearestName)
     EXPECT_NE(error_of("images = 3\n").find("needs a section"), std::string::npos);
     EXPECT_NE(error_of("lens = 3\n").find("needs a list of sections"), std::string::npos);
     EXPECT_NE(error_of("[images\n").find("a/file.toml:1: not valid TOML"), std::string::npos);
+}
+
+TEST(SettingsFile, OneValueIsAListOfOne)
+{
+    Everything s;
+    read_settings_text("slices = 7\nthicknesses = \"3 nm\"\n", "f.toml", {}, s.describe());
+    EXPECT_EQ(s.slices, (std::vector<std::int64_t>{7}));
+    EXPECT_EQ(s.thicknesses, (std::vector<double>{3e-9}));
 }
 
 TEST(SettingsFile, AllWrongLinesAreToldAtOnce)

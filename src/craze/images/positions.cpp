@@ -1,0 +1,182 @@
+// From displacements between pairs of slices to a position for each.
+
+#include "craze/core/errors.hpp"
+#include "craze/images/alignment.hpp"
+#include "craze/io/atomic_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace craze::images {
+
+namespace {
+
+// Solves the normal equations of sum w (t_b - t_a - d)^2 with t_0 = 0: banded, symmetric, positive definite.
+std::vector<double> solve(std::int64_t n, std::span<const PairShift> pairs, std::span<const double> weights,
+                          double Shift::*component, std::int64_t band)
+{
+    std::vector<double> matrix(static_cast<std::size_t>(n * (band + 1))), t(static_cast<std::size_t>(n));
+    const auto at = [&](std::int64_t i, std::int64_t j) -> double& {  // j <= i
+        return matrix[static_cast<std::size_t>(i * (band + 1) + (i - j))];
+    };
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+        const auto [a, b, by] = pairs[p];
+        const double w = weights[p], d = by.*component;
+        at(a, a) += w, at(b, b) += w, at(b, a) -= w;
+        t[static_cast<std::size_t>(a)] -= w * d, t[static_cast<std::size_t>(b)] += w * d;
+    }
+    at(0, 0) += 1.0;
+    for (std::int64_t i = 0; i < n; ++i) at(i, i) += 1e-12;
+    for (std::int64_t i = 0; i < n; ++i)  // L L^T
+        for (std::int64_t j = std::max<std::int64_t>(0, i - band); j <= i; ++j) {
+            double sum = at(i, j);
+            for (std::int64_t k = std::max<std::int64_t>(0, i - band); k < j; ++k) sum -= at(i, k) * at(j, k);
+            at(i, j) = i == j ? std::sqrt(sum) : sum / at(j, j);
+        }
+    for (std::int64_t i = 0; i < n; ++i) {
+        double& v = t[static_cast<std::size_t>(i)];
+        for (std::int64_t k = std::max<std::int64_t>(0, i - band); k < i; ++k)
+            v -= at(i, k) * t[static_cast<std::size_t>(k)];
+        v /= at(i, i);
+    }
+    for (std::int64_t i = n - 1; i >= 0; --i) {
+        double& v = t[static_cast<std::size_t>(i)];
+        for (std::int64_t k = i + 1; k <= std::min(n - 1, i + band); ++k)
+            v -= at(k, i) * t[static_cast<std::size_t>(k)];
+        v /= at(i, i);
+    }
+    return t;
+}
+
+double slope(const std::vector<Shift>& at, double Shift::*component)
+{
+    const auto n = static_cast<double>(at.size());
+    if (at.size() < 2) return 0.0;
+    double sum_t = 0.0, sum_it = 0.0;
+    for (std::size_t i = 0; i < at.size(); ++i)
+        sum_t += at[i].*component, sum_it += static_cast<double>(i) * at[i].*component;
+    return 12.0 * (sum_it - (n - 1.0) / 2.0 * sum_t) / (n * (n * n - 1.0));
+}
+
+}  // namespace
+
+Positions solve_positions(std::int64_t slices, std::span<const PairShift> pairs)
+{
+    Positions result;
+    result.at.resize(static_cast<std::size_t>(slices));
+    if (slices < 2 || pairs.empty()) return result;
+    std::int64_t band = 1;
+    for (const PairShift& pair : pairs) band = std::max(band, pair.b - pair.a);
+    std::vector<double> weights(pairs.size(), 1.0), residual(pairs.size());
+    double scale = 0.0;
+    const auto refit = [&] {
+        const auto x = solve(slices, pairs, weights, &Shift::x, band),
+                   y = solve(slices, pairs, weights, &Shift::y, band);
+        for (std::size_t i = 0; i < result.at.size(); ++i) result.at[i] = {x[i] - x[0], y[i] - y[0]};
+        for (std::size_t p = 0; p < pairs.size(); ++p) {
+            const Shift &a = result.at[static_cast<std::size_t>(pairs[p].a)],
+                        &b = result.at[static_cast<std::size_t>(pairs[p].b)];
+            residual[p] = std::hypot(b.x - a.x - pairs[p].by.x, b.y - a.y - pairs[p].by.y);
+        }
+        auto sorted = residual;
+        std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
+        scale = std::max(0.05, 1.5 * sorted[sorted.size() / 2]);
+    };
+    // First the sum of distances, which outliers cannot drag far, then Tukey's weights, which let them go.
+    for (int round = 0; round < 12; ++round) {
+        refit();
+        for (std::size_t p = 0; p < pairs.size(); ++p) weights[p] = 1.0 / std::max(residual[p], 0.2 * scale);
+    }
+    const auto tukey = [&](double r) {
+        const double u = r / (4.7 * scale);
+        return u < 1.0 ? (1.0 - u * u) * (1.0 - u * u) : 0.0;
+    };
+    for (int round = 0; round < 6; ++round) {
+        for (std::size_t p = 0; p < pairs.size(); ++p) weights[p] = std::max(1e-6, tukey(residual[p]));
+        refit();
+    }
+    std::vector<double> trust(result.at.size());
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+        const double w = tukey(residual[p]);
+        trust[static_cast<std::size_t>(pairs[p].a)] += w, trust[static_cast<std::size_t>(pairs[p].b)] += w;
+        if (w == 0.0) ++result.bad_pairs;
+    }
+    for (std::int64_t i = 0; i < slices; ++i) {
+        if (trust[static_cast<std::size_t>(i)] > 0.1) continue;
+        std::int64_t low = i - 1, high = i + 1;
+        while (high < slices && trust[static_cast<std::size_t>(high)] <= 0.1) ++high;
+        const Shift a = result.at[static_cast<std::size_t>(low >= 0 ? low : std::min(high, slices - 1))];
+        const Shift b = result.at[static_cast<std::size_t>(high < slices ? high : std::max<std::int64_t>(low, 0))];
+        const double f = low >= 0 && high < slices ? 1.0 / static_cast<double>(high - low) : 0.0;
+        result.at[static_cast<std::size_t>(i)] = {a.x + f * (b.x - a.x), a.y + f * (b.y - a.y)};
+    }
+    result.drift = {slope(result.at, &Shift::x), slope(result.at, &Shift::y)};
+    return result;
+}
+
+std::vector<Shift> corrections(const Positions& positions, const Alignment& settings)
+{
+    std::vector<Shift> shifts = positions.at;
+    const auto n = static_cast<double>(shifts.size());
+    Shift mean;
+    for (const Shift& s : shifts) mean.x += s.x / n, mean.y += s.y / n;
+    for (std::size_t i = 0; i < shifts.size(); ++i) {
+        const double from_middle = settings.remove_drift ? 0.0 : static_cast<double>(i) - (n - 1.0) / 2.0;
+        Shift& s = shifts[i];
+        s = {s.x - mean.x - positions.drift.x * from_middle, s.y - mean.y - positions.drift.y * from_middle};
+        if (std::hypot(s.x, s.y) < settings.least_shift) s = {};
+    }
+    return shifts;
+}
+
+CommonCrop common_crop(std::span<const Shift> shifts, std::int64_t nx, std::int64_t ny)
+{
+    Shift low, high;
+    for (const Shift& s : shifts) {
+        low = {std::min(low.x, s.x), std::min(low.y, s.y)};
+        high = {std::max(high.x, s.x), std::max(high.y, s.y)};
+    }
+    const CommonCrop crop{
+        static_cast<std::int64_t>(std::ceil(-low.x)), nx - static_cast<std::int64_t>(std::ceil(high.x)),
+        static_cast<std::int64_t>(std::ceil(-low.y)), ny - static_cast<std::int64_t>(std::ceil(high.y))};
+    if (crop.x1 - crop.x0 < 1 || crop.y1 - crop.y0 < 1)
+        throw InvalidInput(
+            fmt::format("images.alignment: corrections from {:.1f}, {:.1f} to {:.1f}, {:.1f} px leave nothing "
+                        "that all slices of {} x {} share; lower max_shift or set remove_drift = false",
+                        low.x, low.y, high.x, high.y, nx, ny));
+    return crop;
+}
+
+void save_transforms(const std::filesystem::path& file, std::span<const Shift> shifts)
+{
+    std::string text = "slice,shift_x_px,shift_y_px\n";
+    for (std::size_t i = 0; i < shifts.size(); ++i) text += fmt::format("{},{},{}\n", i, shifts[i].x, shifts[i].y);
+    io::write_text(file, text);
+}
+
+std::vector<Shift> load_transforms(const std::filesystem::path& file, std::int64_t slices)
+{
+    std::istringstream in(io::read_text(file));
+    std::string line;
+    std::getline(in, line);
+    std::vector<Shift> shifts;
+    for (std::int64_t number = 2; std::getline(in, line); ++number) {
+        std::istringstream fields(line);
+        std::int64_t slice = -1;
+        Shift shift;
+        char comma = 0, comma2 = 0;
+        if (!(fields >> slice >> comma >> shift.x >> comma2 >> shift.y) || comma != ',' || comma2 != ',' ||
+            slice != static_cast<std::int64_t>(shifts.size()) || !std::isfinite(shift.x + shift.y))
+            throw InvalidInput(fmt::format("{}:{}: needed \"{},shift_x,shift_y\", got \"{}\"", file.string(), number,
+                                           shifts.size(), line));
+        shifts.push_back(shift);
+    }
+    if (static_cast<std::int64_t>(shifts.size()) != slices)
+        throw InvalidInput(fmt::format("{}: needed {} slices, got {}", file.string(), slices, shifts.size()));
+    return shifts;
+}
+
+}  // namespace craze::images

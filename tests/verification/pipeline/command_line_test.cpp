@@ -1,0 +1,154 @@
+#include "support/command.hpp"
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <regex>
+#include <sstream>
+
+namespace craze {
+namespace {
+
+namespace fs = std::filesystem;
+using support::content_of;
+using support::run_craze;
+
+// A coating of a few seconds: every room works, none is a formality.
+constexpr const char* small_settings = R"(
+[synth]
+shape = [96, 96, 96]
+voxel_size = "47.2 nm"
+
+[images.denoise]
+search = 7
+
+[microstructure]
+R_C = "4.5 px"
+R_E = "2.5 px"
+
+[loading]
+specimens = ["dense", "both"]
+
+[loading.uniaxial]
+points = 3
+
+[loading.triaxial]
+points = 4
+)";
+
+class CommandLine : public testing::Test {
+protected:
+    void SetUp() override
+    {
+        fs::create_directories(folder);
+        write("small.toml", small_settings);
+    }
+    void TearDown() override { fs::remove_all(folder); }
+
+    void write(const std::string& name, const std::string& text) { std::ofstream(folder / name) << text; }
+    std::string path(const std::string& name) const { return (folder / name).string(); }
+
+    void expect_refused(const std::string& arguments, const std::string& needle)
+    {
+        const auto ran = run_craze(arguments + " --out " + path("out"));
+        EXPECT_EQ(ran.code, 2) << arguments << "\n" << ran.out;
+        EXPECT_NE(ran.out.find(needle), std::string::npos) << ran.out;
+        EXPECT_FALSE(fs::exists(path("out"))) << "work had started: " << arguments;
+    }
+
+    fs::path folder = fs::temp_directory_path() / ("craze_command_line_" + std::to_string(getpid()));
+};
+
+TEST_F(CommandLine, RefusesWrongInputBeforeAnyWorkStarts)
+{
+    write("key.toml", "[images]\nvoxelsize = \"20 nm\"\n");
+    expect_refused("run " + path("key.toml"),
+                   "key.toml:2: images.voxelsize: unknown key; did you mean \"voxel_size\"?");
+    write("unit.toml", "[images]\nvoxel_size = \"20 mn\"\n");
+    expect_refused("run " + path("unit.toml"), "unknown unit \"mn\"");
+    write("range.toml", "[loading]\nrho_D = \"-5 kg/m3\"\n");
+    expect_refused("run " + path("range.toml"), "range.toml:2");
+    write("stack.toml", "[images]\nsource = \"nowhere.tif\"\n");
+    expect_refused("run " + path("stack.toml"), "nowhere.tif");
+    expect_refused("run " + path("none.toml"), "no such settings file");
+    expect_refused("run " + path("small.toml") + " --set mesh.alpa=3",
+                   "--set mesh.alpa: unknown key; did you mean \"alpha\"?");
+    expect_refused("run", "SETTINGS is required");
+    expect_refused("mesh " + path("small.toml"), "needs the results of microstructure");
+    EXPECT_EQ(run_craze("rum").code, 2);
+    EXPECT_EQ(run_craze("--help").code, 0);
+    EXPECT_EQ(run_craze("--version").code, 0);
+}
+
+TEST_F(CommandLine, InitWritesAFileThatIsReadBack)
+{
+    EXPECT_EQ(run_craze("init " + path("all.toml")).code, 0);
+    EXPECT_EQ(run_craze("init " + path("all.toml")).code, 2) << "wrote over a file";
+    // Every key is known and every default in range: the first thing missing is the room before.
+    EXPECT_NE(run_craze("mesh " + path("all.toml") + " --out " + path("out")).out.find("needs the results of"),
+              std::string::npos);
+}
+
+TEST_F(CommandLine, TheManualInTheDocsIsTheProgramsOwn)
+{
+    EXPECT_EQ(run_craze("settings").out, content_of(fs::path(CRAZE_SOURCE_DIR) / "docs" / "settings.md"))
+        << "run: craze settings > docs/settings.md";
+}
+
+// Times, memory, paths and the thread count differ between runs; all else must not.
+std::string without_circumstances(const std::string& text)
+{
+    static const std::regex key(R"re("(peak_memory_bytes|[a-z_]*seconds|time|threads)")re");
+    std::istringstream in(text);
+    std::string kept;
+    for (std::string line; std::getline(in, line);)
+        if (line.size() > 1000 || !std::regex_search(line, key)) kept += line + "\n";
+    return kept;
+}
+
+TEST_F(CommandLine, OneAndTwoThreadsGiveTheSameBitsInEveryRoom)
+{
+    ASSERT_EQ(run_craze("run " + path("small.toml") + " --threads 1 --out " + path("one")).code, 0);
+    ASSERT_EQ(run_craze("run " + path("small.toml") + " --threads 2 --out " + path("two")).code, 0);
+    int files = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(path("one"))) {
+        // The page shows times; its figures are files of their own and are compared.
+        if (!entry.is_regular_file() || entry.path().filename() == "run.json" || entry.path().extension() == ".html")
+            continue;
+        const fs::path twin = path("two") / fs::relative(entry.path(), path("one"));
+        std::string a = content_of(entry.path()), b = content_of(twin);
+        if (entry.path().extension() == ".json") {
+            a = without_circumstances(a);
+            b = without_circumstances(b);
+        }
+        EXPECT_TRUE(a == b) << entry.path();
+        ++files;
+    }
+    EXPECT_GT(files, 20);
+}
+
+TEST_F(CommandLine, AnInterruptKeepsFinishedRoomsAndResumeGoesOn)
+{
+    const std::string out = path("stopped");
+    const std::string command =
+        std::string("sh -c '") + CRAZE_APP + " run " + path("small.toml") + " --out " + out +
+        " & child=$!; while [ ! -e " + out +
+        "/images/stamp.json ]; do sleep 0.02; done; kill -INT $child; wait $child; echo code $?'";
+    FILE* pipe = popen((command + " 2>&1").c_str(), "r");
+    ASSERT_NE(pipe, nullptr);
+    std::string text;
+    for (int c = 0; (c = fgetc(pipe)) != EOF;) text += static_cast<char>(c);
+    pclose(pipe);
+    ASSERT_NE(text.find("code 130"), std::string::npos) << text;
+    EXPECT_TRUE(fs::exists(out + "/images/stamp.json"));
+    EXPECT_FALSE(fs::exists(out + "/report/stamp.json"));
+
+    const auto resumed = run_craze("run " + path("small.toml") + " --resume --out " + out);
+    EXPECT_EQ(resumed.code, 0) << resumed.out;
+    EXPECT_NE(resumed.out.find("images: unchanged, skipped"), std::string::npos) << resumed.out;
+    EXPECT_TRUE(fs::exists(out + "/report/index.html"));
+}
+
+}  // namespace
+}  // namespace craze
