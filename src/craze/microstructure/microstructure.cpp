@@ -2,6 +2,7 @@
 
 #include "craze/core/errors.hpp"
 #include "craze/microstructure/classification.hpp"
+#include "craze/microstructure/sheets.hpp"
 #include "craze/microstructure/threshold.hpp"
 
 #include <fmt/format.h>
@@ -24,6 +25,13 @@ void describe(Schema& schema, Settings& s)
                     "step of the radii tried for local thickness");
     schema.flag("intermediates", s.intermediates, "write the closed and the enlarged pores of Fig. 6 too");
     schema.flag("figures", s.figures, "write pictures");
+    schema.group("sheets", "cracks thinner than their blur, found by the curvature of gray levels", [&] {
+        schema.flag("on", s.sheets.on, "take dark sheets for void besides what the threshold finds");
+        schema.quantities("scales", s.sheets.scales, Dimension::pixel, {0.5, 20}, "sigma of the smoothing, each tried");
+        schema.number("low", s.sheets.low, {0, 255}, "response of a sheet, gray levels, where it joins a certain one");
+        schema.number("high", s.sheets.high, {0, 255}, "response that makes a sheet certain, gray levels");
+        schema.integer("least", s.sheets.least, {1, 1e9}, "smallest sheet kept, voxels");
+    });
     schema.group("sweep", "what --sweep tries for R_C and R_E, and what it takes for good", [&] {
         schema.quantity("least", s.sweep.least, Dimension::pixel, {0.5, 100}, "smallest radius");
         schema.quantity("most", s.sweep.most, Dimension::pixel, {0.5, 100}, "largest radius");
@@ -37,6 +45,10 @@ void describe(Schema& schema, Settings& s)
 
 void check(const Settings& s)
 {
+    if (s.sheets.high < s.sheets.low)
+        throw InvalidInput(fmt::format("microstructure.sheets.high: needs at least sheets.low ({}), got {}",
+                                       s.sheets.low, s.sheets.high));
+    if (s.sheets.scales.empty()) throw InvalidInput("microstructure.sheets.scales: needs at least one scale");
     if (s.sweep.most < s.sweep.least)
         throw InvalidInput(fmt::format("microstructure.sweep.most: needs at least sweep.least ({} px), got {} px",
                                        s.sweep.least, s.sweep.most));
@@ -65,6 +77,11 @@ Microstructure classify(images::Gray gray, const Settings& settings)
     }
     Microstructure micro;
     micro.matter = matter_of(gray.level, S);
+    if (settings.sheets.on) {
+        const SheetSettings& sheets = settings.sheets;
+        micro.matter = difference(
+            micro.matter, hysteresis(sheet_response(gray.level, sheets.scales), sheets.low, sheets.high, sheets.least));
+    }
     if (micro.matter.count() == 0)
         throw ComputationFailed(
             fmt::format("microstructure: all {} voxels are below the threshold {}: no matter is "

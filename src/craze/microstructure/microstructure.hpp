@@ -9,6 +9,7 @@
 #include "craze/microstructure/labels.hpp"
 
 #include <filesystem>
+#include <vector>
 
 namespace craze::microstructure {
 
@@ -30,6 +31,14 @@ struct SweepSettings {
     double shell_share = 5e-4;
 };
 
+/// Dark sheets found by their curvature besides the threshold: sheets.hpp.
+struct SheetSettings {
+    bool on = false;
+    std::vector<double> scales{2, 3, 4};  ///< px
+    double low = 5.0, high = 15.0;        ///< gray levels
+    std::int64_t least = 100;             ///< voxels
+};
+
 struct Settings {
     ThresholdMethod threshold = ThresholdMethod::moments;
     std::int64_t level = 128;  ///< S of the method `fixed`: void where gray < S
@@ -40,6 +49,7 @@ struct Settings {
     double thickness_step = 0.5;  ///< px, between the radii tried for local thickness
     bool intermediates = false;   ///< write img. 1a and 1b of Fig. 6 too
     bool figures = true;          ///< write pictures
+    SheetSettings sheets;
     SweepSettings sweep;
 };
 
@@ -47,7 +57,7 @@ void describe(Schema& schema, Settings& settings);
 /// @throws InvalidInput  when a value is no choice it could be
 void check(const Settings& settings);
 
-/// Threshold and classification [2.4, Fig. 6].
+/// Matter by the threshold, without the sheets where those are asked for; then pores and cracks [2.4, Fig. 6].
 /// @throws InvalidInput       when gray is empty, or has a single level and the method needs two
 /// @throws ComputationFailed  when all is void
 Microstructure classify(images::Gray gray, const Settings& settings);
