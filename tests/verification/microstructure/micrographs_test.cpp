@@ -94,7 +94,7 @@ Mask sauvola(const Volume<std::uint8_t>& gray, const Mask& layer)
     return dark;
 }
 
-// Lines of the response inside the layer, at least 40 px long.
+// Lines of the response inside the layer, at least 60 px long.
 Mask lines(const Volume<std::uint8_t>& gray, const Mask& layer)
 {
     auto response = sheet_response(gray, {1.5, 2.5});
@@ -105,7 +105,7 @@ Mask lines(const Volume<std::uint8_t>& gray, const Mask& layer)
     const Components each = components(found);
     std::vector<std::uint8_t> keep;
     for (const Object& o : measured(found, each, squared_distance(complement(found))))
-        keep.push_back(2 * o.semi_axes[0] >= 40 ? 1 : 0);
+        keep.push_back(2 * o.semi_axes[0] >= 60 ? 1 : 0);
     return selected(each, keep);
 }
 
