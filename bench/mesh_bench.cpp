@@ -55,7 +55,7 @@ Mask cracks(Shape shape, double share)
 
 constexpr Shape eighth{449, 373, 280}, paper{899, 746, 561};
 
-// The paper's cracks are 2.95 % of the volume; its mesh has 9 million triangles.
+// The share of the paper. Ours are thicker than the paper's where 4.7 % are needed for its 9 million triangles.
 const Mask& small_cracks()
 {
     static const Mask mask = cracks(eighth, 0.0295);
@@ -116,7 +116,7 @@ BENCHMARK(measures)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->Use
 void whole(benchmark::State& state)
 {
     quiet();
-    const Mask mask = cracks(paper, 0.0295);
+    const Mask mask = cracks(paper, 0.047);
     const std::int64_t before = craze::peak_memory();
     std::size_t triangles = 0, vertices = 0;
     for (auto _ : state) {
@@ -133,7 +133,7 @@ BENCHMARK(whole)->Iterations(1)->Unit(benchmark::kMillisecond)->MeasureProcessCP
 void whole_measures(benchmark::State& state)
 {
     quiet();
-    const Mask mask = cracks(paper, 0.0295);
+    const Mask mask = cracks(paper, 0.047);
     const craze::mesh::CrackSurface surface = craze::mesh::mesh_cracks(mask, 23.6e-9, {});
     const std::int64_t before = craze::peak_memory();
     for (auto _ : state) benchmark::DoNotOptimize(craze::mesh::measure(surface, mask, 23.6e-9).area);
