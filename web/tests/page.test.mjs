@@ -24,6 +24,7 @@ before(async () => {
     args: ["--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update", "--disable-sync",
       "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
   });
+  context.setDefaultTimeout(120000);
   page = await context.newPage();
   // The test's own reading of pixels draws remarks on speed; nothing else may be said.
   const ours = /ReadPixels|willReadFrequently/;
@@ -31,7 +32,7 @@ before(async () => {
   page.on("pageerror", (error) => errors.push(error.message));
   page.on("request", (request) => requests.push(request.url()));
   await page.goto(pathToFileURL(page_file).href);
-  await page.waitForFunction(() => document.documentElement.dataset.ready === "yes", null, { timeout: 60000 });
+  await page.waitForFunction(() => document.documentElement.dataset.ready === "yes", null, { timeout: 300000 });
 });
 
 after(async () => {

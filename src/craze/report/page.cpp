@@ -96,6 +96,14 @@ void Page::picture(std::string_view id, std::string_view png, std::string_view c
     caption_and_links(id, caption, paper, "");
 }
 
+void Page::drawing(std::string_view id, std::string_view svg, std::string_view caption, std::string_view paper)
+{
+    io::write_text(folder_ / "figures" / fmt::format("{}.svg", id), svg);
+    body_ += fmt::format("<figure class=\"picture foreign\" id=\"{}\"><img alt=\"{}\" src=\"{}\">", escape(id),
+                         escape(caption), data_uri("image/svg+xml", svg));
+    caption_and_links(id, caption, paper, "");
+}
+
 void Page::viewer(std::string_view id, std::string_view kind, const Json& data, std::string_view caption,
                   std::string_view still, std::string_view paper)
 {

@@ -35,6 +35,8 @@ public:
     void figure(const Rose& rose);
     /// A PNG, also written to figures/<id>.png.
     void picture(std::string_view id, std::string_view png, std::string_view caption, std::string_view paper = "");
+    /// An SVG made elsewhere, also written to figures/<id>.svg; black on white whatever surrounds it.
+    void drawing(std::string_view id, std::string_view svg, std::string_view caption, std::string_view paper = "");
     /// Data that the page's script turns into a viewer of the given kind ("slices", "scene"). `still` is a PNG shown
     /// until then, in print, and where it cannot; it is also written to figures/<id>.png.
     void viewer(std::string_view id, std::string_view kind, const Json& data, std::string_view caption,

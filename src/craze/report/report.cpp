@@ -65,7 +65,8 @@ std::filesystem::path write_report(const std::filesystem::path& out, const Setti
     constexpr Part parts[] = {{"results", write_overview}, {"synth", write_synth},
                               {"images", write_images},    {"microstructure", write_microstructure},
                               {"mesh", write_mesh},        {"domain", write_domain},
-                              {"loading", write_loading},  {"the run", write_record}};
+                              {"loading", write_loading},  {"reproduction", write_reproduction},
+                              {"the run", write_record}};
     for (const auto& [name, write] : parts) guarded(write, work, name);
     const auto file = target / "index.html";
     io::write_text(file, page.finish());

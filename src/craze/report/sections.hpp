@@ -31,6 +31,7 @@ void write_microstructure(Work& work);
 void write_mesh(Work& work);
 void write_domain(Work& work);
 void write_loading(Work& work);
+void write_reproduction(Work& work);
 void write_record(Work& work);
 
 /// Begins the section of a room; false (and a line saying so) if the room left no summary.

@@ -245,6 +245,23 @@ TEST_F(Folder, HeadlineSetsTruthMeasureAndPaperSideBySide)
     EXPECT_NE(row.find("8.83"), std::string::npos);
 }
 
+TEST_F(Folder, ReproductionMarksWhatMissesItsAimAndWhatWasFitted)
+{
+    fs::create_directories(out / "reproduce");
+    io::write_text(out / "reproduce" / "reproduction.json", R"({"size": "small", "seeds": [1, 2, 3], "numbers": {
+        "E.both.x": {"where": "Table 3", "what": "E along x", "unit": "GPa", "paper": 89, "goal": 0.1, "mean": 93, "deviation": 2, "fitted": true},
+        "UTS": {"where": "Table 4", "what": "UTS", "unit": "MPa", "paper": 61, "goal": 0.15, "mean": 90, "deviation": 3, "fitted": false}}})");
+    io::write_text(out / "reproduce" / "fig_21a.svg",
+                   "<svg xmlns=\"http://www.w3.org/2000/svg\"><script>alert(1)</script></svg>");
+    const auto text = page();
+    EXPECT_NE(text.find("+4.5 %<"), std::string::npos);
+    EXPECT_NE(text.find("+47.5 % *"), std::string::npos);
+    EXPECT_NE(text.find("93 ± 2"), std::string::npos);
+    EXPECT_NE(text.find("tag fitted"), std::string::npos);
+    EXPECT_EQ(text.find("alert(1)"), std::string::npos)
+        << "a drawing made elsewhere is a picture, not part of the document";
+}
+
 TEST_F(Folder, PaperNumbersStayAwayFromOtherMaterials)
 {
     fs::create_directories(out / "microstructure");
