@@ -8,8 +8,11 @@ import { after, before, test } from "node:test";
 
 const browserPath = process.env.CRAZE_CHROMIUM || "/usr/bin/chromium";
 const page_file = join(process.env.CRAZE_SAMPLE ?? "", "report", "index.html");
-const missing = !existsSync(browserPath) ? `no browser at ${browserPath}` : !existsSync(page_file) ? `no page at ${page_file}` : null;
-if (missing) console.log(`SKIP_PAGE: ${missing}; scripts/setup installs Chromium, report_sample writes the page`);
+const driver = new URL("../node_modules/playwright-core/package.json", import.meta.url);
+const missing = !existsSync(browserPath) ? `no browser at ${browserPath}`
+  : !existsSync(driver) ? "no npm packages in web/"
+  : !existsSync(page_file) ? `no page at ${page_file}` : null;
+if (missing) console.log(`SKIP_PAGE: ${missing}; scripts/setup installs Chromium and the packages, report_sample writes the page`);
 
 const shots = process.env.CRAZE_SHOTS;
 const profile = mkdtempSync(join(tmpdir(), "craze-page-"));
