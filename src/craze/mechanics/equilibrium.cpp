@@ -2,6 +2,7 @@
 
 #include "craze/core/errors.hpp"
 #include "craze/core/progress.hpp"
+#include "craze/mechanics/coarse_space.hpp"
 #include "craze/mechanics/contacts.hpp"
 #include "craze/mechanics/preconditioner.hpp"
 #include "craze/mechanics/stiffness.hpp"
@@ -25,7 +26,8 @@ struct EquilibriumSolver::Work {
     UnilateralContacts contacts;
     std::vector<std::uint8_t> closed;  ///< contacts that are springs in `stiffness`
     std::vector<std::int64_t> imposed;
-    BlockJacobi preconditioner;
+    BlockJacobi jacobi;
+    CoarseSpace coarse;
     bool preconditioner_fits = false;
 
     std::vector<double> gap, opening, r, d, z, p, q;
@@ -38,6 +40,8 @@ struct EquilibriumSolver::Work {
     void take_kinds(const std::vector<domain::BondKind>& now);
     void take_imposed(const Constraints& constraints, State& state);
     void take_closed_set();
+    void set_up_preconditioner();
+    void precondition(const std::vector<double>& from, std::vector<double>& to) const;
     void out_of_balance(const State& state);
     double scale(const State& state) const;
     std::int64_t conjugate_gradients(double target, std::int64_t most);
@@ -82,6 +86,19 @@ void EquilibriumSolver::Work::take_closed_set()
     preconditioner_fits = false;
 }
 
+void EquilibriumSolver::Work::set_up_preconditioner()
+{
+    jacobi.set_up(*stiffness, imposed);
+    coarse.set_up(lattice, *stiffness, imposed);
+    preconditioner_fits = true;
+}
+
+void EquilibriumSolver::Work::precondition(const std::vector<double>& from, std::vector<double>& to) const
+{
+    jacobi.apply(from, to);
+    coarse.add(from, to);
+}
+
 /// r = forces on the elements, zero where imposed; gap of every contact.
 void EquilibriumSolver::Work::out_of_balance(const State& state)
 {
@@ -106,7 +123,7 @@ double EquilibriumSolver::Work::scale(const State& state) const
 std::int64_t EquilibriumSolver::Work::conjugate_gradients(double target, std::int64_t most)
 {
     std::fill(d.begin(), d.end(), 0.0);
-    preconditioner.apply(r, z);
+    precondition(r, z);
     p = z;
     double rz = dot(r, z), norm = std::sqrt(weighted_square(r, inv_radius));
     std::int64_t done = 0;
@@ -118,7 +135,7 @@ std::int64_t EquilibriumSolver::Work::conjugate_gradients(double target, std::in
         if (!(pq > 0.0)) break;  // no stiffness along p: nothing more to gain
         norm = std::sqrt(step_and_measure(rz / pq, p, q, inv_radius, d, r));
         ++done;
-        preconditioner.apply(r, z);
+        precondition(r, z);
         const double next = dot(r, z);
         scale_and_add(p, next / rz, z);
         rz = next;
@@ -211,8 +228,7 @@ Equilibrium EquilibriumSolver::solve(const Constraints& constraints, State start
                 "iterations; a specimen cut through by cracks may have nothing left to carry the load",
                 out.residual, w.options.tolerance, out.iterations, out.newton));
         w.take_closed_set();
-        if (!w.preconditioner_fits) w.preconditioner.set_up(*w.stiffness, w.imposed);
-        w.preconditioner_fits = true;
+        if (!w.preconditioner_fits) w.set_up_preconditioner();
         const double target = std::max(0.5 * w.options.tolerance * scale, forcing * norm);
         const std::vector<double> before = w.r;
         out.iterations += w.conjugate_gradients(target, w.options.iterations - out.iterations);

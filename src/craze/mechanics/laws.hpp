@@ -128,27 +128,29 @@ CRAZE_INLINE Triple<Real> turned(const Turn<Real>& q, const Triple<Real>& a)
 template <class Real>
 struct CorotationalBeam {
     BeamLoads<Real> loads;
+    Triple<Real> t;                 ///< direction 1 -> 2 now
     Real length;                    ///< L, m
     Real bending_1_2, bending_2_2;  ///< squared bending moments of the ends, N2 m2
     Real bending_energy;            ///< J
 };
-/// @param t_0  direction 1 -> 2 at rest     @param du  u_2 - u_1, m     @param q_1, q_2  rotations of the ends
+/// @param d_0  from end 1 to end 2 at rest, m     @param du  u_2 - u_1, m     @param q_1, q_2  rotations of the ends
 template <class Real>
-CRAZE_INLINE CorotationalBeam<Real> corotational_beam(const BeamSection& s, Real L_0, Real inv_L0,
-                                                      const Triple<Real>& t_0, const Triple<Real>& du,
-                                                      const Turn<Real>& q_1, const Turn<Real>& q_2)
+CRAZE_INLINE CorotationalBeam<Real> corotational_beam(const BeamSection& s, Real inv_L0, const Triple<Real>& d_0,
+                                                      const Triple<Real>& du, const Turn<Real>& q_1,
+                                                      const Turn<Real>& q_2)
 {
     CorotationalBeam<Real> out;
-    const Triple<Real> d = L_0 * t_0 + du;
+    const Triple<Real> t_0 = inv_L0 * d_0, d = d_0 + du;
     out.length = root(dot(d, d));
     const Real inv_L = 1.0 / out.length;
     const Triple<Real> t = inv_L * d;
+    out.t = t;
     const Triple<Real> b_1 = turned(q_1, t_0), b_2 = turned(q_2, t_0);
     const Real bend = 2.0 * s.EI * inv_L0;
 
     const Triple<Real> sum = b_1 + b_2;
     const Real along = dot(t, sum);
-    out.loads.N = s.EA * inv_L0 * (out.length - L_0);
+    out.loads.N = s.EA * (out.length * inv_L0 - 1.0);
     const Real shear = 3.0 * bend * inv_L;
     out.loads.F_1 = (out.loads.N + shear * along) * t - shear * sum;
 

@@ -52,7 +52,7 @@ struct Motion::Work {
     MovingBonds bonds;
     Neighbours neighbours;
     std::vector<double> pose_next, force;
-    bool force_is_current = false;
+    bool force_is_current = false, force_is_zero = true;
     double elastic = 0.0;
     std::vector<std::int64_t> imposed;  ///< ascending
     std::vector<double> imposed_velocity;
@@ -235,6 +235,7 @@ void Motion::Work::step_chunk(std::int64_t chunk)
             move_row(constants, now.velocity.data() + 6 * e, now.pose.data() + 8 * e, pose_next.data() + 8 * e);
     }
     sum.step.damping -= constants.damping * constants.dt * free_of_damping;
+    std::fill_n(force.begin() + 6 * chunk_rows * chunk, 6 * chunk_rows, 0.0);
 }
 
 /// Forces of all; unless measuring, each chunk moves as soon as its forces are complete.
@@ -243,7 +244,9 @@ void Motion::Work::pass(bool measuring)
     const auto work = [&](std::int64_t s) {
         Share& share = shares[static_cast<std::size_t>(s)];
         share.broken.clear();
-        std::fill(force.begin() + 6 * chunk_rows * share.begin, force.begin() + 6 * chunk_rows * share.end, 0.0);
+        // Chunks that have moved left zeros behind, still warm in the cache.
+        if (!force_is_zero)
+            std::fill(force.begin() + 6 * chunk_rows * share.begin, force.begin() + 6 * chunk_rows * share.end, 0.0);
         border_forces(share);
         for (std::int64_t chunk = share.begin; chunk < share.end; ++chunk) {
             forces_of(share, chunk, measuring);
@@ -253,6 +256,7 @@ void Motion::Work::pass(bool measuring)
     parallel_ranges(std::ssize(shares), [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t s = begin; s < end; ++s) work(s);
     });
+    force_is_zero = !measuring;
 }
 
 /// From the next step on. The beam acted for the first half of this one: what it held is taken half way.

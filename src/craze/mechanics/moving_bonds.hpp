@@ -14,8 +14,9 @@ namespace craze::mechanics {
 /// Bonds laid out for the kernel, structure of arrays, sorted by (i, j) and padded for the lanes.
 struct MovingBonds {
     std::vector<std::int32_t> i, j;
-    std::vector<double> tx, ty, tz, length, inv_length;
-    std::vector<double> slack;  ///< T of a contact beam, m; -1 for a beam
+    std::vector<double> dx, dy, dz;  ///< from centre i to centre j at rest, m
+    std::vector<double> inv_length;  ///< 1 / L_0, 1/m
+    std::vector<double> slack;       ///< T / L_0 of a contact beam; -1 for a beam
     std::int64_t count = 0;
 };
 MovingBonds moving_bonds(const Lattice& lattice, std::span<const domain::BondKind> kind);

@@ -47,6 +47,10 @@ CRAZE_MULTIVERSION void add_beams(const BeamSection& s, const Beams& beams, std:
         const Rows row_1 = rows_of({-l.F_1.x, -l.F_1.y, -l.F_1.z, -l.M_1.x, -l.M_1.y, -l.M_1.z});
         const Rows row_2 = rows_of({l.F_1.x, l.F_1.y, l.F_1.z, -l.M_2.x, -l.M_2.y, -l.M_2.z});
         const int count = static_cast<int>(std::min<std::int64_t>(lanes, end - b));
+        if (count == lanes && i[0] >= low && std::max(std::max(j[0], j[1]), std::max(j[2], j[3])) < limit) {
+            for (int k = 0; k < lanes; ++k) add_row(f + 6 * i[k], row_1, k), add_row(f + 6 * j[k], row_2, k);
+            continue;
+        }
         for (int k = 0; k < count; ++k) {
             if (i[k] >= low) add_row(f + 6 * i[k], row_1, k);
             if (j[k] < limit) add_row(f + 6 * j[k], row_2, k);

@@ -54,7 +54,7 @@ struct Pose {
     Q q_1, q_2;
     double L_0 = 400e-9;
 
-    CorotationalBeam<double> beam() const { return corotational_beam(section, L_0, 1.0 / L_0, t, u_2 - u_1, q_1, q_2); }
+    CorotationalBeam<double> beam() const { return corotational_beam(section, 1.0 / L_0, L_0 * t, u_2 - u_1, q_1, q_2); }
     double energy() const
     {
         const auto b = beam();
@@ -232,7 +232,7 @@ TEST(CorotationalBeam, BecomesTheSmallDisplacementBeam)
         const T3 t = random_direction(random), du = random_vector(random, size * L_0),
                  w_1 = random_vector(random, size), w_2 = random_vector(random, size);
         const auto small = small_displacement_beam<double>(section, 1.0 / L_0, t, du, w_1, w_2);
-        const auto large = corotational_beam(section, L_0, 1.0 / L_0, t, du, small_turn(w_1), small_turn(w_2)).loads;
+        const auto large = corotational_beam(section, 1.0 / L_0, L_0 * t, du, small_turn(w_1), small_turn(w_2)).loads;
         difference[k] =
             length(small.F_1 - large.F_1) + length(small.M_1 - large.M_1) / L_0 + length(small.M_2 - large.M_2) / L_0;
     }

@@ -1,0 +1,219 @@
+#include "craze/mechanics/coarse_space.hpp"
+
+#include "craze/core/errors.hpp"
+#include "craze/core/parallel.hpp"
+
+#include <Eigen/Dense>
+#include <Eigen/Sparse>
+
+#include <algorithm>
+#include <array>
+
+namespace craze::mechanics {
+
+namespace {
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+/// One way a bond deforms: stiffness * (g . dofs)^2 / 2, gradients with respect to displacement and rotation of each
+/// end.
+struct Deformation {
+    double stiffness;
+    std::array<Vec3, 2> along, about;
+};
+
+/// The six of a beam: stretch, twist, and symmetric and antisymmetric bending in two planes.
+std::array<Deformation, 6> deformations(const BeamSection& s, const Vec3& t, double inv_L)
+{
+    const Vec3 side = std::abs(t.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+    const Vec3 n = normalized(cross(t, side)), m = cross(t, n), none{};
+    std::array<Deformation, 6> out{Deformation{s.EA * inv_L, {-t, t}, {none, none}},
+                                   Deformation{s.GJ * inv_L, {none, none}, {-t, t}}};
+    std::size_t k = 2;
+    for (const Vec3& axis : {n, m}) {
+        const Vec3 shear = cross(axis, t) * (2.0 * inv_L);
+        out[k++] = {3.0 * s.EI * inv_L, {shear, -shear}, {axis, axis}};
+        out[k++] = {s.EI * inv_L, {none, none}, {-axis, axis}};
+    }
+    return out;
+}
+
+struct BlockEntry {
+    std::int32_t column = 0;
+    Matrix6 block = Matrix6::Zero();
+};
+
+}  // namespace
+
+struct CoarseSpace::Work {
+    Aggregates groups;
+    std::vector<Vec3> arm;           ///< from the centre of its aggregate to each element, over `unit`
+    std::vector<std::uint8_t> held;  ///< bit c: number c of the element is imposed
+    double unit = 1.0;               ///< length that makes rotations displacements, m
+    Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::AMDOrdering<int>> factor;
+    mutable Eigen::VectorXd load;
+
+    Vector6 project(std::int32_t e, Vec3 along, Vec3 about) const;
+    void add_bond(std::vector<BlockEntry>& row, std::int32_t group, std::int32_t i, std::int32_t j,
+                  const Deformation& d) const;
+};
+
+/// P^T of a force and a moment on one element.
+Vector6 CoarseSpace::Work::project(std::int32_t e, Vec3 along, Vec3 about) const
+{
+    const auto k = static_cast<std::size_t>(e);
+    for (int c = 0; c < 3; ++c) {
+        if (held[k] >> c & 1) along[c] = 0.0;
+        if (held[k] >> (3 + c) & 1) about[c] = 0.0;
+    }
+    const Vec3 moment = cross(arm[k], along) + about / unit;
+    return Vector6{along.x, along.y, along.z, moment.x, moment.y, moment.z};
+}
+
+/// Block row of one aggregate: what the bond brings to it.
+void CoarseSpace::Work::add_bond(std::vector<BlockEntry>& row, std::int32_t group, std::int32_t i, std::int32_t j,
+                                 const Deformation& d) const
+{
+    const std::int32_t ends[2] = {i, j};
+    const std::int32_t home[2] = {groups.of[static_cast<std::size_t>(i)], groups.of[static_cast<std::size_t>(j)]};
+    Vector6 g[2];
+    for (std::size_t k = 0; k < 2; ++k)
+        g[k] = home[k] >= 0 ? project(ends[k], d.along[k], d.about[k]) : Vector6::Zero();
+    const auto block = [&](std::int32_t column) -> Matrix6& {
+        for (BlockEntry& entry : row)
+            if (entry.column == column) return entry.block;
+        row.push_back({column, Matrix6::Zero()});
+        return row.back().block;
+    };
+    for (int k = 0; k < 2; ++k) {
+        if (home[k] != group) continue;
+        for (int o = 0; o < 2; ++o)
+            if (home[o] >= 0 && home[o] <= group) block(home[o]).noalias() += (d.stiffness * g[k]) * g[o].transpose();
+    }
+}
+
+CoarseSpace::CoarseSpace() : work_(std::make_unique<Work>()) {}
+CoarseSpace::~CoarseSpace() = default;
+CoarseSpace::CoarseSpace(CoarseSpace&&) noexcept = default;
+CoarseSpace& CoarseSpace::operator=(CoarseSpace&&) noexcept = default;
+std::int32_t CoarseSpace::aggregates() const { return work_->groups.count(); }
+
+void CoarseSpace::set_up(const Lattice& lattice, const Stiffness& stiffness, std::span<const std::int64_t> imposed)
+{
+    Work& w = *work_;
+    const auto n = lattice.r.size();
+    // Aggregates grow with the lattice so that the factor stays small beside the iterations.
+    w.groups = grow_aggregates(lattice, stiffness.beams(), std::max<std::int64_t>(60, lattice.elements() / 400));
+    w.unit = 4.0 * lattice.mean_radius;
+    w.held.assign(n, 0);
+    for (const std::int64_t dof : imposed)
+        w.held[static_cast<std::size_t>(dof / 6)] |= static_cast<std::uint8_t>(1U << (dof % 6));
+    w.arm.assign(n, {});
+    for (std::int32_t e = 0; e < lattice.elements(); ++e) {
+        const std::int32_t g = w.groups.of[static_cast<std::size_t>(e)];
+        if (g >= 0)
+            w.arm[static_cast<std::size_t>(e)] =
+                (lattice.centre(e) - w.groups.centre[static_cast<std::size_t>(g)]) / w.unit;
+    }
+
+    // Bonds within an aggregate do not feel its rigid motion, unless an end is held.
+    struct Bond {
+        std::int32_t group, bond;
+        bool spring;
+    };
+    const Beams& beams = stiffness.beams();
+    const Springs& springs = stiffness.springs();
+    const std::int32_t groups = w.groups.count();
+    std::vector<std::vector<Bond>> of_group(static_cast<std::size_t>(groups));
+    const auto sort_in = [&](std::int32_t i, std::int32_t j, std::int32_t b, bool spring) {
+        const std::int32_t g_i = w.groups.of[static_cast<std::size_t>(i)],
+                           g_j = w.groups.of[static_cast<std::size_t>(j)];
+        if (g_i == g_j && !w.held[static_cast<std::size_t>(i)] && !w.held[static_cast<std::size_t>(j)]) return;
+        if (g_i >= 0) of_group[static_cast<std::size_t>(g_i)].push_back({g_i, b, spring});
+        if (g_j >= 0 && g_j != g_i) of_group[static_cast<std::size_t>(g_j)].push_back({g_j, b, spring});
+    };
+    for (std::int32_t b = 0; b < beams.count; ++b)
+        sort_in(beams.i[static_cast<std::size_t>(b)], beams.j[static_cast<std::size_t>(b)], b, false);
+    for (std::int32_t b = 0; b < springs.size(); ++b)
+        sort_in(springs.i[static_cast<std::size_t>(b)], springs.j[static_cast<std::size_t>(b)], b, true);
+
+    std::vector<std::vector<BlockEntry>> rows(static_cast<std::size_t>(groups));
+    parallel_tasks(groups, [&](std::int64_t g) {
+        auto& row = rows[static_cast<std::size_t>(g)];
+        row.push_back({static_cast<std::int32_t>(g), Matrix6::Zero()});
+        for (const Bond& bond : of_group[static_cast<std::size_t>(g)]) {
+            const auto b = static_cast<std::size_t>(bond.bond);
+            if (bond.spring) {
+                const Vec3 t{springs.tx[b], springs.ty[b], springs.tz[b]};
+                w.add_bond(row, bond.group, springs.i[b], springs.j[b], {springs.k[b], {-t, t}, {Vec3{}, Vec3{}}});
+                continue;
+            }
+            for (const Deformation& d :
+                 deformations(stiffness.section(), {beams.tx[b], beams.ty[b], beams.tz[b]}, beams.inv_length[b]))
+                w.add_bond(row, bond.group, beams.i[b], beams.j[b], d);
+        }
+    });
+
+    std::vector<Eigen::Triplet<double>> entries;
+    double trace = 0.0;
+    for (const auto& row : rows) trace += row[0].block.trace();
+    const double shift =
+        groups > 0 ? 1e-7 * trace / (6.0 * groups) : 0.0;  // floating fragments have nothing of their own
+    for (std::int32_t g = 0; g < groups; ++g)
+        for (const BlockEntry& entry : rows[static_cast<std::size_t>(g)])
+            for (int r = 0; r < 6; ++r)
+                for (int c = 0; c < (entry.column == g ? r + 1 : 6); ++c)
+                    entries.emplace_back(6 * g + r, 6 * entry.column + c,
+                                         entry.block(r, c) + (entry.column == g && r == c ? shift : 0.0));
+    Eigen::SparseMatrix<double> matrix(6 * groups, 6 * groups);
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    if (groups > 0 && trace > 0.0) w.factor.compute(matrix);
+    w.load.resize(groups > 0 && trace > 0.0 && w.factor.info() == Eigen::Success ? 6 * groups : 0);
+}
+
+void CoarseSpace::add(std::span<const double> r, std::span<double> z) const
+{
+    const Work& w = *work_;
+    if (w.load.size() == 0) return;
+    parallel_ranges(w.groups.count(), [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t g = begin; g < end; ++g) {
+            double sum[6] = {};
+            for (auto m = w.groups.first[static_cast<std::size_t>(g)];
+                 m < w.groups.first[static_cast<std::size_t>(g) + 1]; ++m) {
+                const auto e = static_cast<std::size_t>(w.groups.elements[static_cast<std::size_t>(m)]);
+                const double* f = r.data() + 6 * e;  // zero where imposed
+                const Vec3& a = w.arm[e];
+                sum[0] += f[0], sum[1] += f[1], sum[2] += f[2];
+                sum[3] += a.y * f[2] - a.z * f[1] + f[3] / w.unit;
+                sum[4] += a.z * f[0] - a.x * f[2] + f[4] / w.unit;
+                sum[5] += a.x * f[1] - a.y * f[0] + f[5] / w.unit;
+            }
+            for (int c = 0; c < 6; ++c) w.load[6 * g + c] = sum[c];
+        }
+    });
+    w.load = w.factor.solve(w.load).eval();
+    parallel_ranges(w.groups.count(), [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t g = begin; g < end; ++g) {
+            const double* y = w.load.data() + 6 * g;
+            for (auto m = w.groups.first[static_cast<std::size_t>(g)];
+                 m < w.groups.first[static_cast<std::size_t>(g) + 1]; ++m) {
+                const auto e = static_cast<std::size_t>(w.groups.elements[static_cast<std::size_t>(m)]);
+                const Vec3& a = w.arm[e];
+                double* to = z.data() + 6 * e;
+                const double u[6] = {y[0] + y[4] * a.z - y[5] * a.y,
+                                     y[1] + y[5] * a.x - y[3] * a.z,
+                                     y[2] + y[3] * a.y - y[4] * a.x,
+                                     y[3] / w.unit,
+                                     y[4] / w.unit,
+                                     y[5] / w.unit};
+                if (w.held[e] == 0)
+                    for (int c = 0; c < 6; ++c) to[c] += u[c];
+                else
+                    for (int c = 0; c < 6; ++c) to[c] += w.held[e] >> c & 1 ? 0.0 : u[c];
+            }
+        }
+    });
+}
+
+}  // namespace craze::mechanics
