@@ -104,7 +104,7 @@ void CoarseSpace::set_up(const Lattice& lattice, const Stiffness& stiffness, std
     Work& w = *work_;
     const auto n = lattice.r.size();
     // Aggregates grow with the lattice so that the factor stays small beside the iterations.
-    w.groups = grow_aggregates(lattice, stiffness.beams(), std::max<std::int64_t>(60, lattice.elements() / 400));
+    w.groups = grow_aggregates(lattice, stiffness.beams(), std::max<std::int64_t>(60, lattice.elements() / 280));
     w.unit = 4.0 * lattice.mean_radius;
     w.held.assign(n, 0);
     for (const std::int64_t dof : imposed)

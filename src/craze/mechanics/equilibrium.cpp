@@ -24,7 +24,8 @@ struct EquilibriumSolver::Work {
     std::vector<domain::BondKind> kind;  ///< those `stiffness` and `contacts` were made for
     std::optional<Stiffness> stiffness;
     UnilateralContacts contacts;
-    std::vector<std::uint8_t> closed;  ///< contacts that are springs in `stiffness`
+    std::vector<std::uint8_t> closed;           ///< contacts that are springs in `stiffness`
+    std::vector<std::uint8_t> closed_at_setup;  ///< and those the preconditioner knows
     std::vector<std::int64_t> imposed;
     BlockJacobi jacobi;
     CoarseSpace coarse;
@@ -83,13 +84,19 @@ void EquilibriumSolver::Work::take_closed_set()
     }
     if (!changed) return;
     stiffness->set_springs(closed_springs(contacts, gap));
-    preconditioner_fits = false;
+    // A preconditioner may be a little out of date.
+    if (closed_at_setup.size() != closed.size()) preconditioner_fits = false;
+    if (!preconditioner_fits) return;
+    std::int64_t different = 0;
+    for (std::size_t c = 0; c < closed.size(); ++c) different += closed[c] != closed_at_setup[c];
+    preconditioner_fits = different * 200 < lattice.bonds();
 }
 
 void EquilibriumSolver::Work::set_up_preconditioner()
 {
     jacobi.set_up(*stiffness, imposed);
     coarse.set_up(lattice, *stiffness, imposed);
+    closed_at_setup = closed;
     preconditioner_fits = true;
 }
 

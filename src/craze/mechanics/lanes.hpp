@@ -26,6 +26,14 @@ CRAZE_INLINE Pair load_pair(const double* p)
     std::memcpy(&v, p, sizeof v);
     return v;
 }
+/// Single precision in memory.
+CRAZE_INLINE Lanes load_single(const float* p)
+{
+    float __attribute__((vector_size(16))) v;
+    std::memcpy(&v, p, sizeof v);
+    return __builtin_convertvector(v, Lanes);
+}
+CRAZE_INLINE Pair load_single_pair(const float* p) { return Pair{p[0], p[1]}; }
 CRAZE_INLINE void store(double* p, Lanes v) { std::memcpy(p, &v, sizeof v); }
 CRAZE_INLINE void store(double* p, Pair v) { std::memcpy(p, &v, sizeof v); }
 CRAZE_INLINE Lanes spread(double a) { return Lanes{a, a, a, a}; }

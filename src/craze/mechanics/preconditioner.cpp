@@ -14,7 +14,7 @@ namespace {
 using Block = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 
 /// Inverse of a symmetric positive semi-definite block, scaled to a unit diagonal and shifted a little so that a
-/// direction without stiffness is finite; empty rows stay empty.
+/// direction without stiffness is finite; rows that are held are empty and stay so.
 Block safe_inverse(const Block& block)
 {
     constexpr double shift = 1e-3;
@@ -26,16 +26,17 @@ Block safe_inverse(const Block& block)
     return scale.asDiagonal() * inverse * scale.asDiagonal();
 }
 
-CRAZE_MULTIVERSION void apply_blocks(const double* inverse, const double* r, double* z, std::int64_t begin,
+CRAZE_MULTIVERSION void apply_blocks(const float* inverse, const double* r, double* z, std::int64_t begin,
                                      std::int64_t end)
 {
     for (std::int64_t e = begin; e < end; ++e) {
-        const double *row = inverse + 36 * e, *in = r + 6 * e;
+        const float* row = inverse + 36 * e;
+        const double* in = r + 6 * e;
         Lanes head{};
         Pair tail{};
         for (int c = 0; c < 6; ++c) {
-            head += load(row + 6 * c) * in[c];
-            tail += load_pair(row + 6 * c + 4) * in[c];
+            head += load_single(row + 6 * c) * in[c];
+            tail += load_single_pair(row + 6 * c + 4) * in[c];
         }
         store(z + 6 * e, head), store(z + 6 * e + 4, tail);
     }
@@ -45,19 +46,27 @@ CRAZE_MULTIVERSION void apply_blocks(const double* inverse, const double* r, dou
 
 void BlockJacobi::set_up(const Stiffness& stiffness, std::span<const std::int64_t> imposed)
 {
+    const BeamSection& section = stiffness.section();
     const std::int64_t n = stiffness.elements();
-    inverse_.assign(static_cast<std::size_t>(36 * n), 0.0);
-    stiffness.diagonal(inverse_);
+    std::vector<double> blocks(static_cast<std::size_t>(36 * n), 0.0);
+    stiffness.diagonal(blocks);
+    std::vector<std::uint8_t> held(static_cast<std::size_t>(n), 0);
     for (const std::int64_t dof : imposed)
-        for (std::int64_t c = 0; c < 6; ++c) {
-            const std::int64_t e = dof / 6, k = dof % 6;
-            inverse_[static_cast<std::size_t>(36 * e + 6 * k + c)] = 0.0;
-            inverse_[static_cast<std::size_t>(36 * e + 6 * c + k)] = 0.0;
-        }
+        held[static_cast<std::size_t>(dof / 6)] |= static_cast<std::uint8_t>(1U << (dof % 6));
+    // What nothing holds now may be pushed later, before this inverse is made anew.
+    const double R = section.R_B, axial = section.EA / (4.0 * R), bending = section.EI / R;
+    inverse_.resize(blocks.size());
     parallel_ranges(n, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t e = begin; e < end; ++e) {
-            Eigen::Map<Block> block(inverse_.data() + 36 * e);
-            block = safe_inverse(block);
+            Eigen::Map<Block> block(blocks.data() + 36 * e);
+            for (int c = 0; c < 6; ++c) {
+                if (!(block(c, c) > 0.0)) block(c, c) = c < 3 ? axial : bending;
+                if (!(held[static_cast<std::size_t>(e)] >> c & 1)) continue;
+                block.row(c).setZero();
+                block.col(c).setZero();
+            }
+            Eigen::Map<Eigen::Matrix<float, 6, 6, Eigen::RowMajor>>(inverse_.data() + 36 * e) =
+                safe_inverse(block).cast<float>();
         }
     });
 }

@@ -20,7 +20,7 @@ public:
     void apply(std::span<const double> r, std::span<double> z) const;
 
 private:
-    std::vector<double> inverse_;  ///< (n, 6, 6)
+    std::vector<float> inverse_;  ///< (n, 6, 6); an approximate inverse needs no more digits
 };
 
 }  // namespace craze::mechanics

@@ -54,7 +54,10 @@ struct Pose {
     Q q_1, q_2;
     double L_0 = 400e-9;
 
-    CorotationalBeam<double> beam() const { return corotational_beam(section, 1.0 / L_0, L_0 * t, u_2 - u_1, q_1, q_2); }
+    CorotationalBeam<double> beam() const
+    {
+        return corotational_beam(section, 1.0 / L_0, L_0 * t, u_2 - u_1, q_1, q_2);
+    }
     double energy() const
     {
         const auto b = beam();

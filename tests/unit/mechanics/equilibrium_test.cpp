@@ -1,0 +1,297 @@
+#include "craze/mechanics/equilibrium.hpp"
+
+#include "craze/core/errors.hpp"
+#include "craze/core/parallel.hpp"
+#include "craze/mechanics/coarse_space.hpp"
+#include "craze/mechanics/stiffness.hpp"
+#include "support/packings.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <numeric>
+
+namespace craze::mechanics {
+namespace {
+
+const bool alone = (set_threads(1), true);
+
+domain::Domain cracked(int n, std::uint64_t seed)
+{
+    auto d = support::small_packing(n, seed);
+    for (std::size_t b = 0; b < d.bonds.i.size(); b += 6) {
+        d.bonds.kind[b] = domain::BondKind::contact_beam;
+        d.bonds.thickness[b] = b % 4 == 0 ? 0.0 : 0.2e-9;
+    }
+    return d;
+}
+
+Constraints squeezed(const Lattice& lattice, double strain)
+{
+    Constraints c;
+    c.impose_normal(find_face(lattice, 2, false), 0.0);
+    c.impose_normal(find_face(lattice, 2, true), -strain * lattice.box.z);
+    return c;
+}
+
+State shaken(const Lattice& lattice, double size)
+{
+    State state = rest_state(lattice);
+    Random random(7);
+    for (std::size_t k = 0; k < state.u.size(); ++k)
+        state.u[k] = size * (k % 6 < 3 ? lattice.mean_radius : 1.0) * random.uniform(-1, 1);
+    return state;
+}
+
+TEST(Forces, AreMinusTheGradientOfTheEnergy)
+{
+    ASSERT_TRUE(alone);
+    const Lattice lattice = make_lattice(cracked(60, 1), {});
+    State state = shaken(lattice, 0.01);
+    const Forces at = forces(lattice, state);
+    EXPECT_GT(at.closed, 5);
+    for (std::size_t k = 0; k < state.u.size(); k += 7) {
+        const double h = 1e-6 * (k % 6 < 3 ? lattice.mean_radius : 1.0), u = state.u[k];
+        state.u[k] = u + h;
+        const double more = forces(lattice, state).energy;
+        state.u[k] = u - h;
+        const double less = forces(lattice, state).energy;
+        state.u[k] = u;
+        EXPECT_NEAR(at.force[k], -(more - less) / (2 * h), 1e-5 * at.scale * (k % 6 < 3 ? 1.0 : lattice.mean_radius))
+            << k;
+    }
+}
+
+TEST(Stiffness, IsSymmetricAndGivesTheSameBitsOnAnyNumberOfThreads)
+{
+    const Lattice lattice = make_lattice(cracked(900, 2), {});
+    const State a = shaken(lattice, 0.01);
+    State b = a;
+    std::reverse(b.u.begin(), b.u.end());
+    std::vector<double> first(a.u.size()), f(a.u.size()), g(a.u.size());
+    for (const int team : {1, 2, 3}) {
+        set_threads(team);
+        Stiffness stiffness(lattice, lattice.kind);
+        Springs springs;
+        for (std::int32_t p = 0; p < lattice.free.size(); p += 2) {
+            const auto k = static_cast<std::size_t>(p);
+            springs.add(lattice.free.i[k], lattice.free.j[k],
+                        {lattice.free.tx[k], lattice.free.ty[k], lattice.free.tz[k]}, 1e5);
+        }
+        stiffness.set_springs(springs);
+        stiffness.apply(a.u, f);
+        stiffness.apply(b.u, g);
+        if (team == 1) first = f;
+        EXPECT_EQ(std::memcmp(first.data(), f.data(), f.size() * sizeof(double)), 0) << team;
+    }
+    set_threads(1);
+    const double bfa = std::inner_product(b.u.begin(), b.u.end(), f.begin(), 0.0);
+    const double afb = std::inner_product(a.u.begin(), a.u.end(), g.begin(), 0.0);
+    EXPECT_NEAR(bfa / afb, 1.0, 1e-11);
+}
+
+/// Solves the free degrees of freedom by elimination on the dense matrix.
+std::vector<double> eliminated(const Lattice& lattice, const Constraints& c)
+{
+    const auto n = 6 * lattice.r.size();
+    const Stiffness stiffness(lattice, lattice.kind);
+    std::vector<double> u(n, 0.0), column(n), unit(n, 0.0);
+    std::vector<std::vector<double>> K(n, std::vector<double>(n + 1, 0.0));
+    for (std::size_t k = 0; k < n; ++k) {
+        unit[k] = 1.0;
+        stiffness.apply(unit, column);
+        unit[k] = 0.0;
+        for (std::size_t r = 0; r < n; ++r) K[r][k] = column[r];
+    }
+    for (std::size_t m = 0; m < c.dof.size(); ++m) {
+        const auto k = static_cast<std::size_t>(c.dof[m]);
+        for (std::size_t r = 0; r < n; ++r) K[r][n] -= K[r][k] * c.value[m], K[r][k] = K[k][r] = 0.0;
+    }
+    for (std::size_t m = 0; m < c.dof.size(); ++m) {
+        const auto k = static_cast<std::size_t>(c.dof[m]);
+        K[k][k] = 1.0, K[k][n] = c.value[m];
+    }
+    for (std::size_t k = 0; k < n; ++k) {
+        if (K[k][k] == 0.0) K[k][k] = 1.0;  // without bonds
+        for (std::size_t r = k + 1; r < n; ++r) {
+            const double s = K[r][k] / K[k][k];
+            if (s == 0.0) continue;
+            for (std::size_t m = k; m <= n; ++m) K[r][m] -= s * K[k][m];
+        }
+    }
+    for (std::size_t k = n; k-- > 0;) {
+        double sum = K[k][n];
+        for (std::size_t m = k + 1; m < n; ++m) sum -= K[k][m] * u[m];
+        u[k] = sum / K[k][k];
+    }
+    return u;
+}
+
+TEST(Equilibrium, IsThatOfEliminationOnTheDenseMatrix)
+{
+    const Lattice lattice = make_lattice(support::small_packing(70, 3), {});
+    Constraints c = squeezed(lattice, 1e-3);
+    for (int axis = 0; axis < 2; ++axis) c.impose_normal(find_face(lattice, axis, false), 0.0);
+    const auto expected = eliminated(lattice, c);
+    const auto solved = equilibrate(lattice, c, rest_state(lattice), {.tolerance = 1e-12, .free_contacts = false});
+    double largest = 0.0;
+    for (std::size_t k = 0; k < expected.size(); k += 6) largest = std::max(largest, std::abs(expected[k + 2]));
+    for (std::size_t k = 0; k < expected.size(); ++k)
+        EXPECT_NEAR(solved.state.u[k], expected[k], 1e-7 * largest / (k % 6 < 3 ? 1.0 : lattice.mean_radius)) << k;
+    EXPECT_EQ(solved.newton, 1);
+}
+
+// The minimum of a convex energy: no small step in any free direction goes lower, though many contacts closed on the
+// way.
+TEST(Equilibrium, IsTheMinimumOfTheEnergyWithCracksThatClose)
+{
+    const Lattice lattice = make_lattice(cracked(400, 4), {});
+    const Constraints c = squeezed(lattice, 3e-3);
+    const auto solved = equilibrate(lattice, c, rest_state(lattice), {.tolerance = 1e-9});
+    EXPECT_GT(solved.newton, 1);
+    EXPECT_GT(solved.forces.closed, 20);
+    EXPECT_GT(solved.forces.open, 5);
+    EXPECT_LE(solved.residual, 1e-9);
+    Random random(5);
+    for (int trial = 0; trial < 10; ++trial) {
+        State other = solved.state;
+        for (double& u : other.u) u += 1e-13 * random.uniform(-1, 1);
+        for (std::size_t k = 0; k < c.dof.size(); ++k) other.u[static_cast<std::size_t>(c.dof[k])] = c.value[k];
+        EXPECT_GE(forces(lattice, other).energy, solved.forces.energy * (1 - 1e-12));
+    }
+}
+
+TEST(Equilibrium, DoesNotDependOnWhereItStarts)
+{
+    const Lattice lattice = make_lattice(cracked(400, 4), {});
+    const Constraints c = squeezed(lattice, 3e-3);
+    const auto a = equilibrate(lattice, c, rest_state(lattice), {.tolerance = 1e-9});
+    const auto b = equilibrate(lattice, c, shaken(lattice, 1e-3), {.tolerance = 1e-9});
+    EXPECT_NEAR(a.forces.energy / b.forces.energy, 1.0, 1e-8);
+    const Face face = find_face(lattice, 2, true);
+    EXPECT_NEAR(face_force(face, a.forces.force) / face_force(face, b.forces.force), 1.0, 1e-6);
+}
+
+TEST(Equilibrium, GivesTheSameBitsOnAnyNumberOfThreads)
+{
+    const Lattice lattice = make_lattice(cracked(900, 2), {});
+    const Constraints c = squeezed(lattice, 2e-3);
+    const auto one = equilibrate(lattice, c, rest_state(lattice));
+    set_threads(2);
+    const auto two = equilibrate(lattice, c, rest_state(lattice));
+    set_threads(1);
+    EXPECT_EQ(one.iterations, two.iterations);
+    EXPECT_EQ(std::memcmp(one.state.u.data(), two.state.u.data(), one.state.u.size() * sizeof(double)), 0);
+}
+
+// Numbering the elements backwards exchanges the ends of every bond and reverses their order.
+TEST(Equilibrium, DoesNotDependOnTheOrderOfBondsAndOfTheirEnds)
+{
+    const auto domain = cracked(400, 6);
+    domain::Domain back = domain;
+    const std::int32_t n = domain.elements.size();
+    for (auto* v : {&back.elements.x, &back.elements.y, &back.elements.z, &back.elements.r})
+        std::reverse(v->begin(), v->end());
+    const auto turned_round = [&](auto& from, auto&& carry) {
+        std::vector<std::size_t> order(from.i.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        const auto key = [&](std::size_t b) { return std::pair{n - 1 - from.j[b], n - 1 - from.i[b]}; };
+        std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
+        const auto old = from;
+        for (std::size_t b = 0; b < order.size(); ++b) {
+            from.i[b] = n - 1 - old.j[order[b]], from.j[b] = n - 1 - old.i[order[b]];
+            from.thickness[b] = old.thickness[order[b]];
+            carry(old, b, order[b]);
+        }
+    };
+    turned_round(back.bonds, [&](const auto& old, std::size_t b, std::size_t o) { back.bonds.kind[b] = old.kind[o]; });
+    turned_round(back.near, [](const auto&, std::size_t, std::size_t) {});
+    const auto energy = [](const domain::Domain& d) {
+        const Lattice lattice = make_lattice(d, {});
+        return equilibrate(lattice, squeezed(lattice, 2e-3), rest_state(lattice), {.tolerance = 1e-10}).forces.energy;
+    };
+    EXPECT_NEAR(energy(domain) / energy(back), 1.0, 1e-10);
+}
+
+// A free element, and a fragment that nothing holds but a crack's face pushes.
+TEST(Equilibrium, BearsRattlersAndFragments)
+{
+    auto domain = support::small_packing(400, 8);
+    domain::Bonds kept;
+    const auto outside = [&](std::int32_t e) {
+        return norm(domain.elements.centre(e) - 0.5 * domain.box) > 0.25 * domain.box.x;
+    };
+    for (std::size_t b = 0; b < domain.bonds.i.size(); ++b) {
+        const bool cut = outside(domain.bonds.i[b]) != outside(domain.bonds.j[b]);
+        if (domain.bonds.i[b] == 7 || domain.bonds.j[b] == 7) continue;
+        kept.i.push_back(domain.bonds.i[b]), kept.j.push_back(domain.bonds.j[b]);
+        kept.kind.push_back(cut ? domain::BondKind::contact_beam : domain::BondKind::beam);
+        kept.thickness.push_back(cut ? 0.3e-9 : 0.0);
+    }
+    domain.bonds = kept;
+    const Lattice lattice = make_lattice(domain, {});
+    const auto pressed = equilibrate(lattice, squeezed(lattice, 5e-3), rest_state(lattice));
+    EXPECT_LE(pressed.residual, 1e-6);
+    EXPECT_GT(pressed.forces.closed, 3);
+    const auto stretched = equilibrate(lattice, squeezed(lattice, -5e-3), rest_state(lattice));
+    EXPECT_LE(stretched.residual, 1e-6);
+}
+
+TEST(Equilibrium, OfASpecimenCutInTwoBearsNothing)
+{
+    auto domain = support::small_packing(300, 9);
+    for (std::size_t b = 0; b < domain.bonds.i.size(); ++b) {
+        const double p = domain.elements.centre(domain.bonds.i[b]).z, q = domain.elements.centre(domain.bonds.j[b]).z;
+        if ((p - 0.5 * domain.box.z) * (q - 0.5 * domain.box.z) < 0.0)
+            domain.bonds.kind[b] = domain::BondKind::contact_beam;
+    }
+    const Lattice lattice = make_lattice(domain, {});
+    const auto solved =
+        equilibrate(lattice, squeezed(lattice, -1e-3), affine_state(lattice, {0, 0, 1e-3}), {.tolerance = 1e-9});
+    const double whole = 200e9 * 1e-3 * lattice.box.x * lattice.box.y;
+    EXPECT_LT(std::abs(face_force(find_face(lattice, 2, true), solved.forces.force)), 1e-6 * whole);
+}
+
+TEST(Aggregates, HoldEveryBondedElementOnceAndAreConnected)
+{
+    const Lattice lattice = make_lattice(cracked(900, 2), {});
+    const Stiffness stiffness(lattice, lattice.kind);
+    const Aggregates groups = grow_aggregates(lattice, stiffness.beams(), 60);
+    EXPECT_GT(groups.count(), 8);
+    EXPECT_LT(groups.count(), 40);
+    std::vector<int> seen(lattice.r.size(), 0);
+    for (const auto e : groups.elements) ++seen[static_cast<std::size_t>(e)];
+    for (std::size_t e = 0; e < seen.size(); ++e) EXPECT_EQ(seen[e], groups.of[e] >= 0 ? 1 : 0);
+}
+
+TEST(MakeLattice, NamesWhatIsWrong)
+{
+    const auto good = support::small_packing(60, 1);
+    const auto refused = [](const domain::Domain& d, const std::string& word, BeamMaterial material = {}) {
+        try {
+            make_lattice(d, material);
+            ADD_FAILURE() << "accepted: " << word;
+        } catch (const InvalidInput& error) {
+            EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
+        }
+    };
+    auto bad = good;
+    bad.elements.x[5] = NAN;
+    refused(bad, "element 5");
+    bad = good, bad.bonds.thickness[4] = 1.0;
+    refused(bad, "bond 4");
+    bad = good, std::swap(bad.bonds.i[3], bad.bonds.j[3]);
+    refused(bad, "bond 3");
+    bad = good, bad.bonds = {};
+    refused(bad, "nothing is connected");
+    refused(domain::Domain{}, "no element");
+    refused(good, "E_B", {.E_B = -1.0});
+    Lattice lattice = make_lattice(good, {});
+    State state = rest_state(lattice);
+    state.u[9] = NAN;
+    EXPECT_THROW(equilibrate(lattice, squeezed(lattice, 1e-3), state), InvalidInput);
+}
+
+}  // namespace
+}  // namespace craze::mechanics
