@@ -149,7 +149,7 @@ TEST_F(Packing, StaysLinearUnderPressureThoughItsElementsTouch)
         auto solved = solver.solve(squeezed_faces(lattice, strain), std::move(state));
         const double K = pressure(lattice, solved.forces.force) / (3.0 * strain);
         if (first == 0.0) first = K;
-        EXPECT_NEAR(K / first, 1.0, 0.02) << strain;
+        EXPECT_NEAR(K / first, 1.0, 0.01) << strain;
         state = std::move(solved.state);
     }
 }
