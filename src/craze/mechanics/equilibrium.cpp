@@ -221,10 +221,15 @@ Equilibrium EquilibriumSolver::solve(const Constraints& constraints, State start
     w.take_kinds(out.state.kind);
     w.take_imposed(constraints, out.state);
 
-    double forcing = w.contacts.size() == 0 ? 0.0 : 0.05;
+    const double forcing = w.contacts.size() == 0 ? 0.0 : 0.05;
+    double largest_scale = 0.0;
     for (;; ++out.newton) {
         w.out_of_balance(out.state);
-        const double norm = std::sqrt(weighted_square(w.r, w.inv_radius)), scale = w.scale(out.state);
+        const double norm = std::sqrt(weighted_square(w.r, w.inv_radius));
+        // Where nothing is left to bear the load, forces are small against those met on the way.
+        const double scale_now = w.scale(out.state);
+        largest_scale = std::max(largest_scale, scale_now);
+        const double scale = std::max(scale_now, 1e-6 * largest_scale);
         out.residual = scale > 0.0 ? norm / scale : 0.0;
         if (out.residual <= w.options.tolerance) break;
         if (!std::isfinite(out.residual) || out.newton == w.options.newton || out.iterations >= w.options.iterations)

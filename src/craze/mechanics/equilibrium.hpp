@@ -33,7 +33,8 @@ struct Equilibrium {
 /// conjugate gradients. Elements without bonds and fragments that nothing holds stay where they are.
 ///
 /// The residual is the norm of what is out of balance at the free degrees of freedom over the norm of the forces that
-/// bonds and contacts exert on their ends (moments counted over R_DE).
+/// bonds and contacts exert on their ends (moments counted over R_DE), or over a millionth of the largest such norm met
+/// on the way where a specimen bears next to nothing.
 class EquilibriumSolver {
 public:
     explicit EquilibriumSolver(const Lattice& lattice, EquilibriumOptions options = {});

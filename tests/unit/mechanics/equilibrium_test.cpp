@@ -139,7 +139,7 @@ TEST(Equilibrium, IsThatOfEliminationOnTheDenseMatrix)
     for (std::size_t k = 0; k < expected.size(); k += 6) largest = std::max(largest, std::abs(expected[k + 2]));
     for (std::size_t k = 0; k < expected.size(); ++k)
         EXPECT_NEAR(solved.state.u[k], expected[k], 1e-7 * largest / (k % 6 < 3 ? 1.0 : lattice.mean_radius)) << k;
-    EXPECT_EQ(solved.newton, 1);
+    EXPECT_LE(solved.newton, 2);  // at the end of double precision a second pass may be due
 }
 
 // The minimum of a convex energy: no small step in any free direction goes lower, though many contacts closed on the

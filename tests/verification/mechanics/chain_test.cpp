@@ -35,7 +35,7 @@ protected:
         EXPECT_TRUE(alone);
         Constraints c = clamped_root();
         c.impose(tip, dof, value);
-        return equilibrate(lattice, c, rest_state(lattice), {.tolerance = 1e-13});
+        return equilibrate(lattice, c, rest_state(lattice), {.tolerance = 1e-12});
     }
     /// What has to act on the tip.
     double load(const Equilibrium& solved, int dof) const
@@ -66,7 +66,8 @@ TEST_P(ChainOf, TwistsAsAShaft)
 class Elastica : public testing::Test {
 protected:
     static constexpr int beams = 40;
-    Lattice lattice = make_lattice(support::chain(beams), soft);
+    // Slender, because the elastica does not stretch.
+    Lattice lattice = make_lattice(support::chain(beams), {200.0, 0.3, 0.02});
     double EI = lattice.section.EI;
 
     Motion driven(int dof, double value) const
@@ -75,7 +76,7 @@ protected:
         for (const double m : inertia(lattice, Mass::uniform).mass) mass += m;
         MotionOptions options{.damping = 2.0 * 3.516 * std::sqrt(EI / mass), .free_contacts = false};
         Motion motion(lattice, options, rest_state(lattice));
-        const std::int64_t steps = 20000;
+        const std::int64_t steps = 30000;
         Constraints c = clamped_root();
         c.impose(beams, dof, value / (static_cast<double>(steps) * motion.step_length()));
         motion.drive(c);
@@ -94,7 +95,7 @@ TEST_F(Elastica, UnderAnEndMomentIsAnArcOfACircle)
         const State state = motion.state();
         EXPECT_NEAR(1.0 + state.displacement(beams).x, std::sin(angle) / angle, 1e-3);
         EXPECT_NEAR(state.displacement(beams).y, (1.0 - std::cos(angle)) / angle, 1e-3);
-        EXPECT_NEAR(state.rotation(beams).z, angle, 1e-9);
+        EXPECT_NEAR(state.rotation(beams).z, angle, 1e-6);
         EXPECT_NEAR(-motion.force()[6 * beams + 5] / (EI * angle), 1.0, 2e-3);
     }
 }
@@ -124,7 +125,7 @@ TEST(Chain, CarriesAWaveAtItsSpeed)
     // A narrow bell of velocity about the middle parts in two.
     std::vector<double> v(6 * lattice.r.size(), 0.0);
     for (std::int32_t e = 0; e <= beams; ++e)
-        v[static_cast<std::size_t>(6 * e)] = std::exp(-std::pow((lattice.centre(e).x - 0.5) / 0.03, 2));
+        v[static_cast<std::size_t>(6 * e)] = 1e-6 * c * std::exp(-std::pow((lattice.centre(e).x - 0.5) / 0.03, 2));
     motion.set_velocity(v);
     while (motion.time() < 0.3 / c) motion.advance(1);
     const auto now = motion.velocity();

@@ -118,7 +118,7 @@ TEST_F(Packing, IsAsStiffAsItsBeams)
 
 TEST_F(Packing, InTensionFeelsContactBeamsAsIfTheyWereRemoved)
 {
-    const auto cracked = with_penny(dense(), 0.6 * half_edge(), 0.0);
+    const auto cracked = with_penny(dense(), 0.6 * half_edge(), 20e-9);  // wider than anything moves
     const Pull with = pulled(make_lattice(cracked, {}), 0, 1e-3);
     const Pull without = pulled(make_lattice(without_contact_beams(cracked), {}), 0, 1e-3);
     EXPECT_EQ(with.solved.forces.closed, 0);
@@ -137,21 +137,6 @@ TEST_F(Packing, WithClosedCracksResistsPressureAsIfItWereDense)
         return pressure(lattice, solved.forces.force);
     };
     EXPECT_NEAR(squeeze(cracked) / squeeze(whole), 1.0, 0.02);
-}
-
-TEST_F(Packing, StaysLinearUnderPressureThoughItsElementsTouch)
-{
-    const Lattice lattice = make_lattice(dense(), {});
-    EquilibriumSolver solver(lattice);
-    State state = rest_state(lattice);
-    double first = 0.0;
-    for (const double strain : {1e-4, 1e-3, 3e-3, 5e-3}) {
-        auto solved = solver.solve(squeezed_faces(lattice, strain), std::move(state));
-        const double K = pressure(lattice, solved.forces.force) / (3.0 * strain);
-        if (first == 0.0) first = K;
-        EXPECT_NEAR(K / first, 1.0, 0.01) << strain;
-        state = std::move(solved.state);
-    }
 }
 
 TEST(ContactBeam, ClosesAtExactlyItsThickness)
