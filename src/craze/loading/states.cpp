@@ -54,7 +54,7 @@ BornLoads born_loads(const mechanics::Lattice& lattice, const mechanics::State& 
             Vec3 force;  // on i
             if (state.kind[b] == domain::BondKind::beam) {
                 const auto beam = mechanics::corotational_beam<double>(
-                    lattice.section, lattice.length[b], lattice.inv_length[b], mechanics::triple(rest),
+                    lattice.section, lattice.inv_length[b], mechanics::triple(lattice.length[b] * rest),
                     mechanics::triple(du), turn_of(state.rotation(i)), turn_of(state.rotation(j)));
                 const double bending = std::sqrt(std::max(beam.bending_1_2, beam.bending_2_2));
                 force = {beam.loads.F_1.x, beam.loads.F_1.y, beam.loads.F_1.z};
