@@ -148,4 +148,11 @@ void save_figures(const Microstructure& micro, const std::filesystem::path& fold
     io::write_png(folder / "phases.png", montage(phases, 3));
 }
 
+void save_intermediates(const Microstructure& micro, const Settings& settings, const std::filesystem::path& folder)
+{
+    const Classification c = classified(micro.matter, settings.R_C, settings.R_E, settings.border);
+    save(complement(c.closed), micro.gray.voxel_size, folder / "closed.mhd");
+    save(complement(c.enlarged), micro.gray.voxel_size, folder / "enlarged.mhd");
+}
+
 }  // namespace craze::microstructure

@@ -35,4 +35,7 @@ io::Picture montage(const std::vector<Tile>& tiles, std::int64_t columns);
 /// pores and cracks over gray.
 void save_figures(const Microstructure& micro, const std::filesystem::path& folder);
 
+/// Img. 1a and 1b of Fig. 6 as volumes, `closed.mhd` and `enlarged.mhd`: 255 matter, 0 void.
+void save_intermediates(const Microstructure& micro, const Settings& settings, const std::filesystem::path& folder);
+
 }  // namespace craze::microstructure

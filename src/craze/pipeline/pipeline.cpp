@@ -5,6 +5,7 @@
 #include "craze/core/json.hpp"
 #include "craze/core/progress.hpp"
 #include "craze/io/atomic_file.hpp"
+#include "craze/microstructure/figures.hpp"
 #include "craze/pipeline/headline.hpp"
 #include "craze/pipeline/run_record.hpp"
 #include "craze/pipeline/steps.hpp"
@@ -78,6 +79,8 @@ Json do_microstructure(Workspace& w, const fs::path& folder)
     const auto analysis = microstructure::analyse(*w.micro_, w.s.microstructure);
     microstructure::save(*w.micro_, folder);
     microstructure::save(analysis, *w.micro_, folder);
+    if (w.s.microstructure.intermediates) microstructure::save_intermediates(*w.micro_, w.s.microstructure, folder);
+    if (w.s.microstructure.figures) microstructure::save_figures(*w.micro_, folder);
     Json summary = microstructure::summary(*w.micro_, analysis);
     if (w.sweep) {
         const auto sweep = microstructure::swept(w.micro_->matter, w.s.microstructure);

@@ -4,6 +4,7 @@
 #include "craze/core/json.hpp"
 #include "craze/io/atomic_file.hpp"
 #include "craze/io/volume_file.hpp"
+#include "craze/microstructure/figures.hpp"
 #include "support/random_masks.hpp"
 
 #include <gtest/gtest.h>
@@ -60,6 +61,23 @@ TEST_F(MicrostructureFiles, ThatDoNotFitAreRefused)
     EXPECT_THROW(load_microstructure(folder / "microstructure", folder / "images"), InvalidInput);
     io::write_volume(folder / "microstructure" / "phase.mhd", micro.gray.level, 1e-6);
     EXPECT_THROW(load_microstructure(folder / "microstructure", folder / "images"), InvalidInput);
+}
+
+TEST_F(MicrostructureFiles, IntermediatesAreTheClosedAndTheEnlargedPores)
+{
+    save_intermediates(micro, settings, folder);
+    const auto closed = io::read_volume<std::uint8_t>(folder / "closed.mhd");
+    const auto enlarged = io::read_volume<std::uint8_t>(folder / "enlarged.mhd");
+    std::int64_t pores = 0;
+    for (std::int64_t z = 0; z < 29; ++z)
+        for (std::int64_t y = 0; y < 33; ++y)
+            for (std::int64_t x = 0; x < 47; ++x) {
+                EXPECT_GE(closed(x, y, z), enlarged(x, y, z));
+                const bool pore = enlarged(x, y, z) == 0 && !micro.matter(x, y, z);
+                ASSERT_EQ(pore, micro.pore(x, y, z));
+                pores += closed(x, y, z) == 0 ? 1 : 0;
+            }
+    EXPECT_GT(pores, 0);
 }
 
 TEST_F(MicrostructureFiles, TheSummaryAddsUp)

@@ -1,6 +1,7 @@
 // A coating whose truth is known, classified: true pores become pores, true cracks become cracks.
 
 #include "craze/core/progress.hpp"
+#include "craze/images/non_local_means.hpp"
 #include "craze/microstructure/distance.hpp"
 #include "craze/microstructure/objects.hpp"
 #include "craze/microstructure/sweep.hpp"
@@ -15,6 +16,20 @@ namespace {
 double share(const Mask& found, const Mask& truth)
 {
     return static_cast<double>(intersection(found, truth).count()) / static_cast<double>(truth.count());
+}
+
+// The order the paper found (Fig. 4), after the paper's filter.
+TEST(SyntheticCoating, ThresholdsOfTheDenoisedVolumeRiseFromOtsuToMomentsToEntropy)
+{
+    synth::Settings recipe;
+    recipe.shape = {96, 96, 96};
+    const auto seen = synth::observe(synth::make_coating(recipe), recipe);
+    images::NonLocalMeans filter;
+    filter.sigma = 12;
+    filter.h = 0.6 * filter.sigma;
+    const Histogram levels = histogram(images::non_local_means(seen.stack.level, filter));
+    EXPECT_LT(otsu_threshold(levels).value(), moments_threshold(levels).value());
+    EXPECT_LT(moments_threshold(levels).value(), entropy_threshold(levels).value());
 }
 
 TEST(SyntheticCoating, TruePoresBecomePoresAndTrueCracksCracks)
