@@ -61,6 +61,28 @@ double slope(const std::vector<Shift>& at, double Shift::*component)
     return 12.0 * (sum_it - (n - 1.0) / 2.0 * sum_t) / (n * (n * n - 1.0));
 }
 
+// Straight lines fitted about every slice, weighted by a Gaussian of standard deviation `width`.
+std::vector<Shift> trend_of(const std::vector<Shift>& at, double width)
+{
+    const auto n = static_cast<std::int64_t>(at.size());
+    const auto reach = static_cast<std::int64_t>(std::min(static_cast<double>(n), std::ceil(5.0 * width)));
+    std::vector<Shift> trend(at.size());
+    for (std::int64_t i = 0; i < n; ++i) {
+        double s0 = 0.0, s1 = 0.0, s2 = 0.0;
+        Shift b0, b1;
+        for (std::int64_t k = std::max<std::int64_t>(0, i - reach); k < std::min(n, i + reach + 1); ++k) {
+            const auto d = static_cast<double>(k - i);
+            const double w = std::exp(-0.5 * d * d / (width * width));
+            const Shift& v = at[static_cast<std::size_t>(k)];
+            s0 += w, s1 += w * d, s2 += w * d * d;
+            b0.x += w * v.x, b0.y += w * v.y, b1.x += w * d * v.x, b1.y += w * d * v.y;
+        }
+        const double det = s0 * s2 - s1 * s1;
+        trend[static_cast<std::size_t>(i)] = {(s2 * b0.x - s1 * b1.x) / det, (s2 * b0.y - s1 * b1.y) / det};
+    }
+    return trend;
+}
+
 }  // namespace
 
 Positions solve_positions(std::int64_t slices, std::span<const PairShift> pairs)
@@ -121,14 +143,18 @@ std::vector<Shift> corrections(const Positions& positions, const Alignment& sett
 {
     std::vector<Shift> shifts = positions.at;
     const auto n = static_cast<double>(shifts.size());
-    Shift mean;
-    for (const Shift& s : shifts) mean.x += s.x / n, mean.y += s.y / n;
-    for (std::size_t i = 0; i < shifts.size(); ++i) {
-        const double from_middle = settings.remove_drift ? 0.0 : static_cast<double>(i) - (n - 1.0) / 2.0;
-        Shift& s = shifts[i];
-        s = {s.x - mean.x - positions.drift.x * from_middle, s.y - mean.y - positions.drift.y * from_middle};
-        if (std::hypot(s.x, s.y) < settings.least_shift) s = {};
+    if (shifts.size() < 3) return std::vector<Shift>(shifts.size());
+    if (settings.remove_drift) {
+        Shift mean;
+        for (const Shift& s : shifts) mean.x += s.x / n, mean.y += s.y / n;
+        for (Shift& s : shifts) s = {s.x - mean.x, s.y - mean.y};
+    } else {
+        const auto trend = trend_of(positions.at, settings.trend);
+        for (std::size_t i = 0; i < shifts.size(); ++i)
+            shifts[i] = {shifts[i].x - trend[i].x, shifts[i].y - trend[i].y};
     }
+    for (Shift& s : shifts)
+        if (std::hypot(s.x, s.y) < settings.least_shift) s = {};
     return shifts;
 }
 
