@@ -12,7 +12,7 @@
 
 namespace craze::images {
 
-constexpr std::int64_t row_length = 128;              // voxels in a row of weights
+constexpr std::int64_t row_length = 208;              // voxels in a row of weights
 constexpr std::int64_t padded_row = row_length + 16;  // the same with what the neighbourhood needs beside it
 constexpr std::int64_t chunk = 7;                     // rows of weights summed in 16 bits: 7 x 8191 < 2^16
 constexpr std::int32_t weight_of_one = 8191;
@@ -34,7 +34,7 @@ struct PatchScale {
         std::int16_t slope = 0;     ///< most stretch slope 2^-15 is 10/8 in 2^-13
         /// exp(-u) = sum_i cubic[i] u^i; 1 and u in 2^-13, u^2 in 2^-15, u^3 in 2^-17
         std::array<std::int16_t, 4> cubic{8186, -8060, 14423, -11467};
-        std::int16_t quarter = 8192;
+        std::int16_t quarter = 8192, four = 4;
     } weights;
 };
 
