@@ -1,0 +1,176 @@
+#include "craze/images/stripes.hpp"
+
+#include "craze/core/random.hpp"
+#include "craze/images/homogenise.hpp"
+#include "craze/images/quality.hpp"
+#include "craze/images/wavelet.hpp"
+#include "craze/io/picture.hpp"
+#include "craze/io/volume_file.hpp"
+#include "support/data.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace craze::images {
+namespace {
+
+constexpr std::int64_t nx = 320, ny = 240;
+
+// Matter with a pore, a thin crack across the stripes and one along them; no noise.
+std::vector<float> coating()
+{
+    std::vector<float> slice(nx * ny, 165.0F);
+    for (std::int64_t y = 0; y < ny; ++y)
+        for (std::int64_t x = 0; x < nx; ++x) {
+            float& v = slice[static_cast<std::size_t>(x + nx * y)];
+            if (std::hypot(x - 200, y - 60) < 30) v = 45.0F;
+            if (x > 60 && x < 62 && y > 40 && y < 200) v = 45.0F;  // 1 px
+            if (y == 150 && x > 100 && x < 250) v = 75.0F;
+        }
+    return slice;
+}
+
+// One offset per line, faster than 64 px, of a given deviation.
+std::vector<float> stripes_of(std::int64_t lines, double deviation, std::uint64_t seed)
+{
+    std::vector<float> offset;
+    Random random(seed);
+    double sum = 0.0;
+    for (std::int64_t i = 0; i < lines; ++i) {
+        offset.push_back(static_cast<float>(deviation * random.normal()));
+        sum += static_cast<double>(offset.back()) / static_cast<double>(lines);
+    }
+    for (float& o : offset) o -= static_cast<float>(sum);
+    return offset;
+}
+
+double rms(const std::vector<float>& a, const std::vector<float>& b)
+{
+    double sum = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += static_cast<double>((a[i] - b[i]) * (a[i] - b[i]));
+    return std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+TEST(StripeNotch, RemovesPlantedStripesToOneLevelAndKeepsThinCracks)
+{
+    for (const int axis : {0, 1}) {
+        const auto truth = coating();
+        auto slice = truth;
+        const auto offset = stripes_of(axis == 0 ? ny : nx, 6.0, 3);
+        for (std::int64_t y = 0; y < ny; ++y)
+            for (std::int64_t x = 0; x < nx; ++x)
+                slice[static_cast<std::size_t>(x + nx * y)] += offset[static_cast<std::size_t>(axis == 0 ? y : x)];
+        Stripes how;
+        how.axis = axis;
+        how.length = 1.0;
+        StripeFilter(nx, ny, how).remove(slice);
+        EXPECT_LE(rms(slice, truth), 1.0) << axis;
+        const auto at = [&](std::int64_t x, std::int64_t y) { return slice[static_cast<std::size_t>(x + nx * y)]; };
+        EXPECT_GE(at(80, 120) - at(61, 120), 0.95F * 120.0F);
+        EXPECT_GE(at(180, 140) - at(180, 150), 0.95F * 90.0F);
+    }
+}
+
+TEST(StripeNotch, LeavesASliceWithoutStripesAlone)
+{
+    const auto truth = coating();
+    auto slice = truth;
+    StripeFilter(nx, ny, {}).remove(slice);
+    EXPECT_LE(rms(slice, truth), 1.0);
+}
+
+TEST(StripeWavelet, IsAnIdentityWithoutDampingAndRemovesStripesWithIt)
+{
+    std::vector<float> picture(nx * ny);
+    Random random(8);
+    for (float& v : picture) v = static_cast<float>(random.uniform(0, 255));
+    auto same = picture;
+    damp_stripes(same, nx, ny, 4, 1e-3);  // only the mean along the rows of each band
+    EXPECT_LE(rms(same, picture), 10.0);
+    auto none = picture;
+    damp_stripes(none, nx, ny, 0, 1.0);
+    EXPECT_LE(rms(none, picture), 1e-3);
+    std::vector<float> flat(nx * ny, 100.0F);
+    const auto offset = stripes_of(ny, 6.0, 4);
+    for (std::int64_t y = 0; y < ny; ++y)
+        for (std::int64_t x = 0; x < nx; ++x)
+            flat[static_cast<std::size_t>(x + nx * y)] += offset[static_cast<std::size_t>(y)];
+    damp_stripes(flat, nx, ny, 5, 3.0);
+    EXPECT_LE(rms(flat, std::vector<float>(nx * ny, 100.0F)), 2.0);
+}
+
+TEST(Homogeniser, FindsAndRemovesAPlantedGradient)
+{
+    const Shape shape{60, 50, 40};
+    const Vec3 slope{0.1, -0.15, 0.3};
+    for (const auto axis : {Homogenise::Axis::gradient, Homogenise::Axis::z}) {
+        Volume<std::uint8_t> v(shape);
+        for (std::int64_t z = 0; z < shape.nz; ++z)
+            for (std::int64_t y = 0; y < shape.ny; ++y)
+                for (std::int64_t x = 0; x < shape.nx; ++x) {
+                    Random random(1, static_cast<std::uint64_t>(x + 60 * (y + 50 * z)));
+                    const bool dark = (x * x + 3 * y + z * z) % 11 == 0;
+                    const double shade = axis == Homogenise::Axis::gradient
+                                             ? slope.x * static_cast<double>(x) + slope.y * static_cast<double>(y) +
+                                                   slope.z * static_cast<double>(z)
+                                             : slope.z * static_cast<double>(z);
+                    v(x, y, z) = static_cast<std::uint8_t>(
+                        std::clamp((dark ? 45.0 : 165.0) + shade + 2.0 * random.normal(), 0.0, 255.0));
+                }
+        Homogenise how;
+        how.axis = axis;
+        how.by = Homogenise::By::solid;
+        Homogeniser homogeniser(shape, how, histogram_of(v.values()));
+        for (std::int64_t z = 0; z < shape.nz; ++z) homogeniser.fit(z, v.slice(z));
+        for (std::int64_t z = 0; z < shape.nz; ++z) homogeniser.learn(z, v.slice(z));
+        homogeniser.settle();
+        EXPECT_NEAR(homogeniser.gradient().z, slope.z, 0.02);
+        std::vector<double> level(static_cast<std::size_t>(shape.nz));
+        std::vector<std::uint8_t> slice(static_cast<std::size_t>(shape.nx * shape.ny));
+        for (std::int64_t z = 0; z < shape.nz; ++z) {
+            homogeniser.remove(z, v.slice(z), slice);
+            level[static_cast<std::size_t>(z)] = centre_of_solid(histogram_of(slice), solid_of(histogram_of(slice)));
+        }
+        const auto [least, most] = std::minmax_element(level.begin(), level.end());
+        EXPECT_LT(*most - *least, 1.0);
+    }
+}
+
+// Real curtains: what the eye sees as stripes is the power of the column means.
+TEST(Stripes, OfARealCurtainedSliceFallTenfold)
+{
+    const auto file = support::data_folder() / "curtained_slice" / "curtained.tif";
+    CRAZE_NEEDS_DATA(file);
+    const auto raw = io::read_volume<std::uint8_t>(file);
+    const auto [w, h, depth] = raw.shape();
+    for (const auto method : {Stripes::Method::notch, Stripes::Method::wavelet}) {
+        Stripes how;
+        how.method = method;
+        how.axis = 1;
+        std::vector<float> slice(raw.values().begin(), raw.values().end());
+        StripeFilter(w, h, how).remove(slice);
+        Volume<std::uint8_t> cleaned(raw.shape());
+        for (std::size_t i = 0; i < slice.size(); ++i)
+            cleaned.values()[i] = static_cast<std::uint8_t>(std::clamp(slice[i] + 0.5F, 0.0F, 255.0F));
+        const auto stripes = [&](const Volume<std::uint8_t>& v) {
+            return quality_of(
+                       "", v.shape(),
+                       [&](std::int64_t, std::span<std::uint8_t> to) { std::ranges::copy(v.values(), to.begin()); }, 1,
+                       64)
+                .stripes;
+        };
+        const double before = stripes(raw), after = stripes(cleaned);
+        std::printf("curtains: %.3f before, %.3f after: energy falls %.1f times\n", before, after,
+                    before * before / (after * after));
+        EXPECT_GE(before * before, 10.0 * after * after);
+        if (const char* folder = std::getenv("CRAZE_PICTURES"))
+            io::write_png(
+                std::filesystem::path(folder) / (method == Stripes::Method::notch ? "notch.png" : "wavelet.png"), w, h,
+                cleaned.values());
+    }
+}
+
+}  // namespace
+}  // namespace craze::images
