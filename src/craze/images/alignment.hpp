@@ -57,9 +57,9 @@ struct Positions {
 /// disagree is placed between its neighbours.
 Positions solve_positions(std::int64_t slices, std::span<const PairShift> pairs);
 
-/// What to read where: aligned(x, y) = raw(x + shift.x, y + shift.y). Only what moves faster than `trend` slices is
-/// corrected, so that inclined structures stay inclined, unless remove_drift asks for all; shifts shorter than
-/// least_shift become zero.
+/// What to read where: aligned(x, y) = raw(x + shift.x, y + shift.y). Jumps (over 5 px) are undone, and what slices are misplaced
+/// each for itself; slow displacements stay, as leaning cracks look just the same, unless remove_drift asks for all.
+/// Shifts shorter than least_shift become zero.
 std::vector<Shift> corrections(const Positions& positions, const Alignment& settings);
 
 /// The part that every slice covers after its correction, as [x0, x1) x [y0, y1).

@@ -61,26 +61,54 @@ double slope(const std::vector<Shift>& at, double Shift::*component)
     return 12.0 * (sum_it - (n - 1.0) / 2.0 * sum_t) / (n * (n * n - 1.0));
 }
 
-// Straight lines fitted about every slice, weighted by a Gaussian of standard deviation `width`.
-std::vector<Shift> trend_of(const std::vector<Shift>& at, double width)
+// How likely steps of a walk with variance q (in units of the jitter's) under white jitter would have given x: the
+// logarithm of the likelihood, by Kalman's filter, at the jitter that suits x best.
+double log_likelihood(const std::vector<double>& x, double q)
 {
-    const auto n = static_cast<std::int64_t>(at.size());
-    const auto reach = static_cast<std::int64_t>(std::min(static_cast<double>(n), std::ceil(5.0 * width)));
-    std::vector<Shift> trend(at.size());
-    for (std::int64_t i = 0; i < n; ++i) {
-        double s0 = 0.0, s1 = 0.0, s2 = 0.0;
-        Shift b0, b1;
-        for (std::int64_t k = std::max<std::int64_t>(0, i - reach); k < std::min(n, i + reach + 1); ++k) {
-            const auto d = static_cast<double>(k - i);
-            const double w = std::exp(-0.5 * d * d / (width * width));
-            const Shift& v = at[static_cast<std::size_t>(k)];
-            s0 += w, s1 += w * d, s2 += w * d * d;
-            b0.x += w * v.x, b0.y += w * v.y, b1.x += w * d * v.x, b1.y += w * d * v.y;
-        }
-        const double det = s0 * s2 - s1 * s1;
-        trend[static_cast<std::size_t>(i)] = {(s2 * b0.x - s1 * b1.x) / det, (s2 * b0.y - s1 * b1.y) / det};
+    double at = x[0], variance = 1.0, squares = 0.0, logs = 0.0;
+    for (std::size_t i = 1; i < x.size(); ++i) {
+        const double expected = variance + q, F = expected + 1.0, v = x[i] - at;
+        squares += v * v / F, logs += std::log(F);
+        at += expected / F * v, variance = expected / F;
     }
-    return trend;
+    const auto n = static_cast<double>(x.size() - 1);
+    return -0.5 * (n * std::log(std::max(squares / n, 1e-12)) + logs);
+}
+
+// What of one coordinate of the positions is not the specimen's own: jumps, and jitter about a walk.
+//
+// Cracks that lean move from slice to slice just as a drifting stage would, but successive slices move alike; slices
+// that are misplaced each for itself make steps that turn back. The share of each is the likeliest one, and the walk
+// then the least of sum (x - p)^2 + rho sum (x' - x)^2 with rho the variance of the jitter over that of the walk's
+// steps.
+std::vector<double> misplacement(const std::vector<double>& p, double slope)
+{
+    const std::size_t n = p.size();
+    std::vector<double> level(n), out(n, 0.0), size(n - 1);
+    for (std::size_t i = 0; i < n; ++i) level[i] = p[i] - slope * static_cast<double>(i);
+    for (std::size_t i = 0; i + 1 < n; ++i) size[i] = std::abs(level[i + 1] - level[i]);
+    auto sorted = size;
+    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(n / 2 - 1), sorted.end());
+    const double jump = std::max(5.0, 9.0 * sorted[n / 2 - 1]);
+    for (std::size_t i = 1; i < n; ++i) out[i] = out[i - 1] + (size[i - 1] > jump ? level[i] - level[i - 1] : 0.0);
+    for (std::size_t i = 0; i < n; ++i) level[i] -= out[i];
+
+    double q = 1e3, best = log_likelihood(level, q);
+    for (int k = 11; k >= -24; --k) {
+        const double candidate = std::pow(10.0, k / 4.0), likelihood = log_likelihood(level, candidate);
+        if (likelihood > best) best = likelihood, q = candidate;
+    }
+    const double rho = 1.0 / q;
+    std::vector<double> x = level, diagonal(n);
+    for (std::size_t i = 0; i < n; ++i) diagonal[i] = 1.0 + rho * (i == 0 || i + 1 == n ? 1.0 : 2.0);
+    for (std::size_t i = 1; i < n; ++i) {
+        const double f = rho / diagonal[i - 1];
+        diagonal[i] -= f * rho, x[i] += f * x[i - 1];
+    }
+    x[n - 1] /= diagonal[n - 1];
+    for (std::size_t i = n - 1; i-- > 0;) x[i] = (x[i] + rho * x[i + 1]) / diagonal[i];
+    for (std::size_t i = 0; i < n; ++i) out[i] += level[i] - x[i];
+    return out;
 }
 
 }  // namespace
@@ -142,19 +170,21 @@ Positions solve_positions(std::int64_t slices, std::span<const PairShift> pairs)
 std::vector<Shift> corrections(const Positions& positions, const Alignment& settings)
 {
     std::vector<Shift> shifts = positions.at;
-    const auto n = static_cast<double>(shifts.size());
-    if (shifts.size() < 3) return std::vector<Shift>(shifts.size());
-    if (settings.remove_drift) {
-        Shift mean;
-        for (const Shift& s : shifts) mean.x += s.x / n, mean.y += s.y / n;
-        for (Shift& s : shifts) s = {s.x - mean.x, s.y - mean.y};
-    } else {
-        const auto trend = trend_of(positions.at, settings.trend);
-        for (std::size_t i = 0; i < shifts.size(); ++i)
-            shifts[i] = {shifts[i].x - trend[i].x, shifts[i].y - trend[i].y};
-    }
-    for (Shift& s : shifts)
+    if (shifts.size() < 4) return std::vector<Shift>(shifts.size());
+    if (!settings.remove_drift)
+        for (double Shift::*component : {&Shift::x, &Shift::y}) {
+            std::vector<double> along(shifts.size());
+            for (std::size_t i = 0; i < shifts.size(); ++i) along[i] = shifts[i].*component;
+            along = misplacement(along, positions.drift.*component);
+            for (std::size_t i = 0; i < shifts.size(); ++i) shifts[i].*component = along[i];
+        }
+    Shift mean;
+    for (const Shift& s : shifts)
+        mean.x += s.x / static_cast<double>(shifts.size()), mean.y += s.y / static_cast<double>(shifts.size());
+    for (Shift& s : shifts) {
+        s = {s.x - mean.x, s.y - mean.y};
         if (std::hypot(s.x, s.y) < settings.least_shift) s = {};
+    }
     return shifts;
 }
 

@@ -37,8 +37,6 @@ void describe(Schema& schema, Settings& s)
         schema.quantity("max_shift", a.max_shift, Dimension::pixel, {0.5, 1000}, "largest shift between neighbours");
         schema.quantity("least_shift", a.least_shift, Dimension::pixel, {0, 10},
                         "corrections smaller than this leave a slice untouched");
-        schema.number("trend", a.trend, {1, 1e6},
-                      "slices: what moves more slowly stays, as inclined structures look like drift");
         schema.flag("remove_drift", a.remove_drift,
                     "follow slow displacements too, which straightens inclined structures");
         schema.path("transforms", a.transforms, "transforms.csv of an earlier run to use instead of measuring");

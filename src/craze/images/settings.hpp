@@ -26,12 +26,8 @@ struct Alignment {
     std::int64_t neighbours = 4;  ///< each slice is compared with this many before it
     double max_shift = 20.0;      ///< px, between neighbours
     double least_shift = 0.25;    ///< px: corrections smaller than this leave the slice untouched
-    /// Slices. What moves more slowly than this stays: where cracks lean one way for a while, their slices move as if
-    /// the stage had drifted, and following them bends the stack (by 13 px over 288 slices of a coating that had not
-    /// moved).
-    double trend = 2.0;
-    bool remove_drift = false;  ///< follow every displacement, slow ones too: straightens inclined structures
-    std::string transforms;     ///< CSV of an earlier run to use instead of measuring
+    bool remove_drift = false;    ///< follow every displacement, slow ones too: straightens inclined structures
+    std::string transforms;       ///< CSV of an earlier run to use instead of measuring
 };
 
 /// Curtains of the ion beam [2.3 (2)].
