@@ -84,7 +84,7 @@ TEST(Positions, AreThoseThatAllPairsAgreeOnWhateverABadSliceSays)
 
 TEST(Alignment, TakesOutJitterAndKeepsAnInclinedRodInclined)
 {
-    const std::int64_t n = 96, slices = 40;
+    const std::int64_t n = 96, slices = 80;
     const double slope = std::tan(15.0 * 3.14159265358979 / 180.0);
     Alignment how;
     ShiftMeter meter(n, n, how);

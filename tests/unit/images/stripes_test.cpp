@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::int64_t nx = 320, ny = 240;
 
-// Matter with a pore, a thin crack across the stripes and one along them; no noise.
+// Matter with a pore, a thin crack across the stripes and one along them, noise 12.
 std::vector<float> coating()
 {
     std::vector<float> slice(nx * ny, 165.0F);
@@ -29,20 +29,23 @@ std::vector<float> coating()
             if (x > 60 && x < 62 && y > 40 && y < 200) v = 45.0F;  // 1 px
             if (y == 150 && x > 100 && x < 250) v = 75.0F;
         }
+    Random random(2);
+    for (float& v : slice) v += static_cast<float>(12.0 * random.normal());
     return slice;
 }
 
-// One offset per line, faster than 64 px, of a given deviation.
-std::vector<float> stripes_of(std::int64_t lines, double deviation, std::uint64_t seed)
+// One offset per line: waves from 2 px to `longest`; `deviation` rms.
+std::vector<float> stripes_of(std::int64_t lines, double deviation, double longest, std::uint64_t seed)
 {
-    std::vector<float> offset;
+    constexpr int waves = 16;
+    std::vector<float> offset(static_cast<std::size_t>(lines));
     Random random(seed);
-    double sum = 0.0;
-    for (std::int64_t i = 0; i < lines; ++i) {
-        offset.push_back(static_cast<float>(deviation * random.normal()));
-        sum += static_cast<double>(offset.back()) / static_cast<double>(lines);
+    for (int w = 0; w < waves; ++w) {
+        const double length = random.uniform(2, longest), phase = random.uniform(0, 6.28);
+        for (std::size_t i = 0; i < offset.size(); ++i)
+            offset[i] += static_cast<float>(deviation * std::sqrt(2.0 / waves) *
+                                            std::cos(6.283185307 * static_cast<double>(i) / length + phase));
     }
-    for (float& o : offset) o -= static_cast<float>(sum);
     return offset;
 }
 
@@ -58,7 +61,7 @@ TEST(StripeNotch, RemovesPlantedStripesToOneLevelAndKeepsThinCracks)
     for (const int axis : {0, 1}) {
         const auto truth = coating();
         auto slice = truth;
-        const auto offset = stripes_of(axis == 0 ? ny : nx, 6.0, 3);
+        const auto offset = stripes_of(axis == 0 ? ny : nx, 4.0, 24.0, 3);
         for (std::int64_t y = 0; y < ny; ++y)
             for (std::int64_t x = 0; x < nx; ++x)
                 slice[static_cast<std::size_t>(x + nx * y)] += offset[static_cast<std::size_t>(axis == 0 ? y : x)];
@@ -67,9 +70,16 @@ TEST(StripeNotch, RemovesPlantedStripesToOneLevelAndKeepsThinCracks)
         how.length = 1.0;
         StripeFilter(nx, ny, how).remove(slice);
         EXPECT_LE(rms(slice, truth), 1.0) << axis;
-        const auto at = [&](std::int64_t x, std::int64_t y) { return slice[static_cast<std::size_t>(x + nx * y)]; };
-        EXPECT_GE(at(80, 120) - at(61, 120), 0.95F * 120.0F);
-        EXPECT_GE(at(180, 140) - at(180, 150), 0.95F * 90.0F);
+        // Contrast of the cracks: mean along them of what the filter changed, against 120 and 90 levels.
+        const auto change = [&](std::int64_t x, std::int64_t y) {
+            const auto i = static_cast<std::size_t>(x + nx * y);
+            return static_cast<double>(slice[i] - truth[i]);
+        };
+        double upright = 0.0, lying = 0.0;
+        for (std::int64_t y = 45; y < 195; ++y) upright += (change(61, y) - change(75, y)) / 150;
+        for (std::int64_t x = 105; x < 245; ++x) lying += (change(x, 150) - change(x, 140)) / 140;
+        EXPECT_LE(std::abs(upright), 0.05 * 120);
+        EXPECT_LE(std::abs(lying), 0.05 * 90);
     }
 }
 
@@ -93,7 +103,7 @@ TEST(StripeWavelet, IsAnIdentityWithoutDampingAndRemovesStripesWithIt)
     damp_stripes(none, nx, ny, 0, 1.0);
     EXPECT_LE(rms(none, picture), 1e-3);
     std::vector<float> flat(nx * ny, 100.0F);
-    const auto offset = stripes_of(ny, 6.0, 4);
+    const auto offset = stripes_of(ny, 6.0, 8.0, 4);
     for (std::int64_t y = 0; y < ny; ++y)
         for (std::int64_t x = 0; x < nx; ++x)
             flat[static_cast<std::size_t>(x + nx * y)] += offset[static_cast<std::size_t>(y)];
@@ -138,38 +148,40 @@ TEST(Homogeniser, FindsAndRemovesAPlantedGradient)
     }
 }
 
-// Real curtains: what the eye sees as stripes is the power of the column means.
+// Power of the mean of all levels along each column, variations over more than 65 px left out.
+double curtains_of(const Volume<std::uint8_t>& v)
+{
+    const auto mean = line_means(v.values(), v.shape().nx, v.shape().ny, 1, Solid{});
+    double power = 0.0;
+    for (std::size_t i = 32; i + 32 < mean.size(); ++i) {
+        double around = 0.0;
+        for (std::size_t j = i - 32; j <= i + 32; ++j) around += mean[j] / 65.0;
+        power += (mean[i] - around) * (mean[i] - around) / static_cast<double>(mean.size() - 64);
+    }
+    return power;
+}
+
+// Severe real curtains are the wavelets' case; the notch is for long faint stripes.
 TEST(Stripes, OfARealCurtainedSliceFallTenfold)
 {
     const auto file = support::data_folder() / "curtained_slice" / "curtained.tif";
     CRAZE_NEEDS_DATA(file);
     const auto raw = io::read_volume<std::uint8_t>(file);
     const auto [w, h, depth] = raw.shape();
-    for (const auto method : {Stripes::Method::notch, Stripes::Method::wavelet}) {
-        Stripes how;
-        how.method = method;
-        how.axis = 1;
-        std::vector<float> slice(raw.values().begin(), raw.values().end());
-        StripeFilter(w, h, how).remove(slice);
-        Volume<std::uint8_t> cleaned(raw.shape());
-        for (std::size_t i = 0; i < slice.size(); ++i)
-            cleaned.values()[i] = static_cast<std::uint8_t>(std::clamp(slice[i] + 0.5F, 0.0F, 255.0F));
-        const auto stripes = [&](const Volume<std::uint8_t>& v) {
-            return quality_of(
-                       "", v.shape(),
-                       [&](std::int64_t, std::span<std::uint8_t> to) { std::ranges::copy(v.values(), to.begin()); }, 1,
-                       64)
-                .stripes;
-        };
-        const double before = stripes(raw), after = stripes(cleaned);
-        std::printf("curtains: %.3f before, %.3f after: energy falls %.1f times\n", before, after,
-                    before * before / (after * after));
-        EXPECT_GE(before * before, 10.0 * after * after);
-        if (const char* folder = std::getenv("CRAZE_PICTURES"))
-            io::write_png(
-                std::filesystem::path(folder) / (method == Stripes::Method::notch ? "notch.png" : "wavelet.png"), w, h,
-                cleaned.values());
-    }
+    Stripes how;
+    how.method = Stripes::Method::wavelet;
+    how.axis = 1;
+    how.damping = 12.0;
+    std::vector<float> slice(raw.values().begin(), raw.values().end());
+    StripeFilter(w, h, how).remove(slice);
+    Volume<std::uint8_t> cleaned(raw.shape());
+    for (std::size_t i = 0; i < slice.size(); ++i)
+        cleaned.values()[i] = static_cast<std::uint8_t>(std::clamp(slice[i] + 0.5F, 0.0F, 255.0F));
+    const double before = curtains_of(raw), after = curtains_of(cleaned);
+    std::printf("curtains: energy %.3f before, %.3f after, falls %.1f times\n", before, after, before / after);
+    EXPECT_GE(before, 10.0 * after);
+    if (const char* folder = std::getenv("CRAZE_PICTURES"))
+        io::write_png(std::filesystem::path(folder) / "wavelet.png", w, h, cleaned.values());
 }
 
 }  // namespace

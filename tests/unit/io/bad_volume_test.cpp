@@ -97,7 +97,7 @@ TEST_F(BadVolume, WhatIsNoVolumeIsRefused)
     expect_refused(folder / "v.raw", "v.raw", {.dataset = "", .raw_shape = {10, 10, 9}});
     EXPECT_NO_THROW(open_volume(folder / "v.raw", {.dataset = "", .raw_shape = {10, 10, 10}}));
     write_volume(folder / "v.h5", ramp({8, 8, 2}));
-    expect_refused(folder / "v.h5", "none", {.dataset = "none"});
+    expect_refused(folder / "v.h5", "none", {.dataset = "none", .raw_shape = {}});
 }
 
 TEST_F(BadVolume, FolderThatIsEmptyOrMixedIsRefusedNamingTheSlice)

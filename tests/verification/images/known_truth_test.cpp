@@ -48,7 +48,8 @@ TEST(Chain, RecoversTheVoidsAndThinCracksOfTheKnownCoating)
     const double dice =
         share(2 * intersection(void_truth, void_found).count(), void_truth.count() + void_found.count());
     const double recall = share(intersection(cracks, void_found).count(), cracks.count());
-    std::printf("S %d, Dice %.4f, crack recall %.4f, sigma %.2f\n", *S, dice, recall, done.sigma);
+    std::printf("jitter %.2f px, S %d, Dice %.4f, crack recall %.4f, sigma %.2f\n", done.jitter, *S, dice, recall,
+                done.sigma);
     EXPECT_NEAR(done.sigma, 12.0, 1.0);
     EXPECT_GE(dice, 0.97);
     EXPECT_GE(recall, 0.95);
