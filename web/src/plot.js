@@ -26,7 +26,7 @@ function ascending(series) {
 function lookOf(series, title) {
   const look = { pxAlign: 0, label: series.name || title, stroke: series.colour, width: 2, points: { show: false }, spanGaps: false };
   if (series.mark === "dashed") look.dash = [8, 5];
-  if (series.mark === "bars") Object.assign(look, { paths: uPlot.paths.stepped({ align: 1 }), fill: series.colour + "55", width: 1 });
+  if (series.mark === "bars") Object.assign(look, { paths: uPlot.paths.stepped({ align: 1 }), fill: series.colour + "55", width: 1, pxAlign: 1 });
   if (series.mark === "points") Object.assign(look, { paths: () => null, points: { show: true, size: 7, fill: series.colour, width: 0 } });
   look.value = (_, v) => (v == null ? "–" : String(Number(v.toPrecision(5))));
   return look;
