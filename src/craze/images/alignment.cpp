@@ -103,8 +103,22 @@ ShiftMeter::Spectrum ShiftMeter::spectrum_of(std::span<const std::uint8_t> slice
     return spectrum;
 }
 
-Shift ShiftMeter::displacement(const Spectrum& a, const Spectrum& b) const
+// Sum of squares of the faded slice, times the number of its pixels (Parseval, over half a spectrum).
+double ShiftMeter::power_of(const Spectrum& spectrum) const
 {
+    const std::int64_t across = width_ / 2 + 1;
+    double sum = 0.0;
+    for (std::int64_t i = 0; i < std::ssize(spectrum); ++i) {
+        const std::int64_t x = i % across;
+        const bool alone = x == 0 || 2 * x == width_;
+        sum += (alone ? 1.0 : 2.0) * static_cast<double>(std::norm(spectrum[static_cast<std::size_t>(i)]));
+    }
+    return sum;
+}
+
+ShiftMeter::Measured ShiftMeter::displacement(const Spectrum& a, const Spectrum& b) const
+{
+    const double power = std::sqrt(power_of(a) * power_of(b));
     Spectrum product(a.size());
     multiply(a.data(), b.data(), product.data(), static_cast<std::int64_t>(a.size()));
     std::vector<float> correlation(static_cast<std::size_t>(width_ * height_));
@@ -125,7 +139,8 @@ Shift ShiftMeter::displacement(const Spectrum& a, const Spectrum& b) const
             around[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)] =
                 static_cast<double>(at(best_x + i - 1, best_y + j - 1));
     const Shift within = top_of(around);
-    return {static_cast<double>(best_x) + within.x, static_cast<double>(best_y) + within.y};
+    return {{static_cast<double>(best_x) + within.x, static_cast<double>(best_y) + within.y},
+            power > 0.0 ? static_cast<double>(at(best_x, best_y)) / power : 0.0};
 }
 
 std::vector<PairShift> ShiftMeter::add(const std::vector<std::vector<std::uint8_t>>& slices)
@@ -139,11 +154,12 @@ std::vector<PairShift> ShiftMeter::add(const std::vector<std::vector<std::uint8_
     std::vector<PairShift> pairs;
     for (std::int64_t i = 0; i < n; ++i)
         for (std::int64_t k = 1; k <= std::min(neighbours_, old + i); ++k)
-            pairs.push_back({count_ + i - k, count_ + i, {}});
+            pairs.push_back({count_ + i - k, count_ + i, {}, 1.0});
     parallel_tasks(static_cast<std::int64_t>(pairs.size()), [&](std::int64_t p) {
         PairShift& pair = pairs[static_cast<std::size_t>(p)];
-        pair.by = displacement(before_[static_cast<std::size_t>(pair.a - count_ + old)],
-                               before_[static_cast<std::size_t>(pair.b - count_ + old)]);
+        const Measured found = displacement(before_[static_cast<std::size_t>(pair.a - count_ + old)],
+                                            before_[static_cast<std::size_t>(pair.b - count_ + old)]);
+        pair.by = found.by, pair.likeness = found.likeness;
     });
     count_ += n;
     while (static_cast<std::int64_t>(before_.size()) > neighbours_) before_.pop_front();

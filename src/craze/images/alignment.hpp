@@ -23,6 +23,7 @@ struct Shift {
 struct PairShift {
     std::int64_t a = 0, b = 0;
     Shift by;
+    double likeness = 1.0;  ///< correlation coefficient of the slices once b is moved back, at most 1
 };
 
 /// Measures displacements between slices that come in order: the highest cross-correlation of the slices, their
@@ -37,7 +38,12 @@ public:
 private:
     using Spectrum = std::vector<std::complex<float>>;
     Spectrum spectrum_of(std::span<const std::uint8_t> slice) const;
-    Shift displacement(const Spectrum& a, const Spectrum& b) const;
+    struct Measured {
+        Shift by;
+        double likeness;
+    };
+    Measured displacement(const Spectrum& a, const Spectrum& b) const;
+    double power_of(const Spectrum& spectrum) const;
 
     std::int64_t nx_, ny_, width_, height_, neighbours_, count_ = 0;
     double max_shift_;
@@ -51,15 +57,20 @@ struct Positions {
     std::vector<Shift> at;       ///< of each slice against the first
     Shift drift;                 ///< px per slice: linear trend of `at`
     std::int64_t bad_pairs = 0;  ///< set aside by the robust fit
+    std::int64_t pairs = 0;      ///< measured
+    /// Whether the pairs know where the slices lie: at most a quarter was set aside. A stack with few large things in
+    /// it, each going its own way, has no common displacement.
+    bool known() const { return 4 * bad_pairs <= pairs; }
 };
 
 /// Least squares over all pairs, those that disagree with the rest weighing less and less; a slice whose pairs all
-/// disagree is placed between its neighbours.
+/// disagree is placed between its neighbours. Pairs much less alike than most say nothing: where a large pore begins,
+/// two slices have little in common and the best of their correlations is chance.
 Positions solve_positions(std::int64_t slices, std::span<const PairShift> pairs);
 
-/// What to read where: aligned(x, y) = raw(x + shift.x, y + shift.y). Jumps (over 5 px) are undone, and what slices are misplaced
-/// each for itself; slow displacements stay, as leaning cracks look just the same, unless remove_drift asks for all.
-/// Shifts shorter than least_shift become zero.
+/// What to read where: aligned(x, y) = raw(x + shift.x, y + shift.y). Jumps (over 5 px) are undone, and what slices are
+/// misplaced each for itself; slow displacements stay, as leaning cracks look just the same, unless remove_drift asks
+/// for all. Shifts shorter than least_shift become zero.
 std::vector<Shift> corrections(const Positions& positions, const Alignment& settings);
 
 /// The part that every slice covers after its correction, as [x0, x1) x [y0, y1).

@@ -23,7 +23,7 @@ std::vector<double> solve(std::int64_t n, std::span<const PairShift> pairs, std:
         return matrix[static_cast<std::size_t>(i * (band + 1) + (i - j))];
     };
     for (std::size_t p = 0; p < pairs.size(); ++p) {
-        const auto [a, b, by] = pairs[p];
+        const auto& [a, b, by, likeness] = pairs[p];
         const double w = weights[p], d = by.*component;
         at(a, a) += w, at(b, b) += w, at(b, a) -= w;
         t[static_cast<std::size_t>(a)] -= w * d, t[static_cast<std::size_t>(b)] += w * d;
@@ -118,9 +118,16 @@ Positions solve_positions(std::int64_t slices, std::span<const PairShift> pairs)
     Positions result;
     result.at.resize(static_cast<std::size_t>(slices));
     if (slices < 2 || pairs.empty()) return result;
+    result.pairs = std::ssize(pairs);
     std::int64_t band = 1;
     for (const PairShift& pair : pairs) band = std::max(band, pair.b - pair.a);
     std::vector<double> weights(pairs.size(), 1.0), residual(pairs.size());
+    std::vector<double> likeness;
+    for (const PairShift& pair : pairs) likeness.push_back(pair.likeness);
+    std::nth_element(likeness.begin(), likeness.begin() + static_cast<std::ptrdiff_t>(likeness.size() / 2),
+                     likeness.end());
+    const double alike = 0.8 * likeness[likeness.size() / 2];
+    const auto known = [&](std::size_t p) { return pairs[p].likeness >= alike ? 1.0 : 0.0; };
     double scale = 0.0;
     const auto refit = [&] {
         const auto x = solve(slices, pairs, weights, &Shift::x, band),
@@ -138,19 +145,20 @@ Positions solve_positions(std::int64_t slices, std::span<const PairShift> pairs)
     // First the sum of distances, which outliers cannot drag far, then Tukey's weights, which let them go.
     for (int round = 0; round < 12; ++round) {
         refit();
-        for (std::size_t p = 0; p < pairs.size(); ++p) weights[p] = 1.0 / std::max(residual[p], 0.2 * scale);
+        for (std::size_t p = 0; p < pairs.size(); ++p)
+            weights[p] = std::max(1e-6, known(p) / std::max(residual[p], 0.2 * scale));
     }
     const auto tukey = [&](double r) {
         const double u = r / (4.7 * scale);
         return u < 1.0 ? (1.0 - u * u) * (1.0 - u * u) : 0.0;
     };
     for (int round = 0; round < 6; ++round) {
-        for (std::size_t p = 0; p < pairs.size(); ++p) weights[p] = std::max(1e-6, tukey(residual[p]));
+        for (std::size_t p = 0; p < pairs.size(); ++p) weights[p] = std::max(1e-6, known(p) * tukey(residual[p]));
         refit();
     }
     std::vector<double> trust(result.at.size());
     for (std::size_t p = 0; p < pairs.size(); ++p) {
-        const double w = tukey(residual[p]);
+        const double w = known(p) * tukey(residual[p]);
         trust[static_cast<std::size_t>(pairs[p].a)] += w, trust[static_cast<std::size_t>(pairs[p].b)] += w;
         if (w == 0.0) ++result.bad_pairs;
     }
@@ -170,7 +178,7 @@ Positions solve_positions(std::int64_t slices, std::span<const PairShift> pairs)
 std::vector<Shift> corrections(const Positions& positions, const Alignment& settings)
 {
     std::vector<Shift> shifts = positions.at;
-    if (shifts.size() < 4) return std::vector<Shift>(shifts.size());
+    if (shifts.size() < 4 || !positions.known()) return std::vector<Shift>(shifts.size());
     if (!settings.remove_drift)
         for (double Shift::*component : {&Shift::x, &Shift::y}) {
             std::vector<double> along(shifts.size());

@@ -123,6 +123,11 @@ private:
         }
         const Positions positions = solve_positions(nz, pairs);
         shifts_ = corrections(positions, settings_.alignment);
+        if (!positions.known())
+            notice(fmt::format(
+                "images: {} of {} pairs of slices disagree with the others, so the slices stay where they are; "
+                "more neighbours (images.alignment.neighbours) or a larger crop may tell",
+                positions.bad_pairs, positions.pairs));
         done_.drift = positions.drift;
         done_.bad_pairs = positions.bad_pairs;
         save_transforms(work_ / "transforms.csv", shifts_);

@@ -68,7 +68,7 @@ TEST(Positions, AreThoseThatAllPairsAgreeOnWhateverABadSliceSays)
     for (std::int64_t b = 0; b < n; ++b)
         for (std::int64_t a = std::max<std::int64_t>(0, b - 4); a < b; ++a) {
             const Shift &p = truth[static_cast<std::size_t>(a)], &q = truth[static_cast<std::size_t>(b)];
-            PairShift pair{a, b, {q.x - p.x, q.y - p.y}};
+            PairShift pair{a, b, {q.x - p.x, q.y - p.y}, 1.0};
             if (a == 20 || b == 20) pair.by = {random.uniform(-20, 20), random.uniform(-20, 20)};
             pairs.push_back(pair);
         }

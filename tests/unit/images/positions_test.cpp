@@ -16,7 +16,7 @@ std::vector<PairShift> pairs_of(const std::vector<Shift>& at, double error, std:
     for (std::int64_t b = 1; b < std::ssize(at); ++b)
         for (std::int64_t a = std::max<std::int64_t>(0, b - 4); a < b; ++a) {
             const Shift &p = at[static_cast<std::size_t>(a)], &q = at[static_cast<std::size_t>(b)];
-            pairs.push_back({a, b, {q.x - p.x + error * random.normal(), q.y - p.y + error * random.normal()}});
+            pairs.push_back({a, b, {q.x - p.x + error * random.normal(), q.y - p.y + error * random.normal()}, 1.0});
         }
     return pairs;
 }
