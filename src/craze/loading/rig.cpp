@@ -86,14 +86,14 @@ Point Rig::measure(const Loading& loading, double s, const mechanics::State& sta
             const double least = mechanics::face_force(faces_.side(a, false), forces.force);
             const double most = mechanics::face_force(faces_.side(a, true), forces.force);
             const double section = box[(a + 1) % 3] * box[(a + 2) % 3];
-            p.stress[a] = 0.5 * (most - least) / section;
+            p.stress[a] = 0.5 * (most - least) / section;  // [Eq. 16]
             const double mean = 0.5 * (std::abs(most) + std::abs(least));
             if (mean > 0.0) p.imbalance = std::max(p.imbalance, std::abs(most + least) / mean);
         }
-        volume *= 1.0 + p.strain[a];
+        volume *= 1.0 + p.strain[a];  // [Eq. 21]
     }
     p.eta = 1.0 / volume - 1.0;
-    p.pressure = -(p.stress.x + p.stress.y + p.stress.z) / 3.0;
+    p.pressure = -(p.stress.x + p.stress.y + p.stress.z) / 3.0;  // [Eq. 19]
     const auto beams = std::count(state.kind.begin(), state.kind.end(), domain::BondKind::beam);
     const auto start = std::count(lattice_.kind.begin(), lattice_.kind.end(), domain::BondKind::beam);
     const auto contact_beams = forces.closed + forces.open;
