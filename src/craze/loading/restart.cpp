@@ -22,7 +22,7 @@ void fields(V& v, DriveProgress& p)
 
 namespace {
 
-constexpr char magic[] = "craze restart 1\n";
+constexpr char magic[] = "craze restart 2\n";
 static_assert(std::endian::native == std::endian::little, "restart files are written as they lie in memory");
 
 /// Numbers come first as JSON, which keeps every bit of a finite double; arrays follow as they lie in memory.
@@ -58,7 +58,8 @@ struct ArrayReader {
 template <class V>
 void arrays(V& v, mechanics::MotionState& m, std::vector<std::int32_t>& bonds, std::vector<std::int64_t>& steps)
 {
-    v(m.pose), v(m.velocity), v(m.kind), v(bonds), v(steps);
+    static_assert(std::is_trivially_copyable_v<mechanics::PressedPair> && sizeof(mechanics::PressedPair) == 16);
+    v(m.pose), v(m.velocity), v(m.kind), v(m.pressed), v(bonds), v(steps);
 }
 
 }  // namespace

@@ -92,7 +92,7 @@ Motion::Work::Work(const Lattice& of, const MotionOptions& with, MotionState fro
       now(std::move(from)),
       masses(inertia(of, with.mass)),
       bonds(moving_bonds(of, now.kind)),
-      neighbours(of, with.geometry)
+      neighbours(of, with.geometry, now.pressed)
 {
     check_options(options);
     const Stiffness intact(lattice, std::vector<domain::BondKind>(lattice.i.size(), domain::BondKind::beam));
@@ -279,7 +279,7 @@ void Motion::Work::break_beams()
         for (std::size_t k = 0; k < share.border.size(); ++k)
             share.border_bonds.slack[k] = bonds.slack[static_cast<std::size_t>(share.border[k])];
     if (!options.free_contacts) return;
-    now.fracture_energy -= neighbours.part(pose_next, now.kind);
+    neighbours.part(pose_next, now.kind);
     share_pairs();
 }
 
@@ -480,6 +480,7 @@ State Motion::state() const
 MotionState Motion::stopped() const
 {
     MotionState out = work_->now;
+    out.pressed = work_->neighbours.pressed();
     out.pose.resize(8 * work_->lattice.r.size()), out.velocity.resize(6 * work_->lattice.r.size());
     return out;
 }

@@ -48,6 +48,13 @@ struct BrokenBond {
     std::int64_t step = 0;  ///< after which it broke
 };
 
+/// Unbonded elements that were pressed together by the matter about them when it parted: they touch below the distance
+/// they had then.
+struct PressedPair {
+    std::int32_t i = 0, j = 0;
+    double limit = 0.0;  ///< contact distance, m
+};
+
 /// All that is needed to go on to the same bits.
 struct MotionState {
     std::int64_t step = 0;
@@ -57,6 +64,7 @@ struct MotionState {
     std::vector<double> velocity;  ///< half a step ago, shape (n, 6), m/s and rad/s
     std::vector<domain::BondKind> kind;                              ///< shape (m,)
     std::vector<BrokenBond> broken;                                  ///< in the order they broke (by step, then bond)
+    std::vector<PressedPair> pressed;                                ///< sorted by (i, j)
     double damping_energy = 0.0, fracture_energy = 0.0, work = 0.0;  ///< J
 };
 

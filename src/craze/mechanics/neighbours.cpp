@@ -34,6 +34,8 @@ CRAZE_INLINE Apart apart(const Pairs& pairs, std::size_t p, Geometry geometry, c
     return out;
 }
 
+bool by_ends(const PressedPair& a, const PressedPair& b) { return a.i != b.i ? a.i < b.i : a.j < b.j; }
+
 }  // namespace
 
 void Pairs::add(const Pairs& from, std::size_t p)
@@ -44,12 +46,13 @@ void Pairs::add(const Pairs& from, std::size_t p)
     cut.push_back(from.cut[p]);
 }
 
-Neighbours::Neighbours(const Lattice& lattice, Geometry geometry)
+Neighbours::Neighbours(const Lattice& lattice, Geometry geometry, std::vector<PressedPair> pressed)
     : lattice_(lattice),
       holding_(lattice),
       geometry_(geometry),
       reach_(0.3 * lattice.mean_radius),
-      skin_(0.03 * lattice.mean_radius)
+      skin_(0.03 * lattice.mean_radius),
+      pressed_(std::move(pressed))
 {
 }
 
@@ -59,6 +62,7 @@ bool Neighbours::follow(std::span<const double> pose, std::span<const domain::Bo
     if (until_search_ >= 0.0 && until_choice_ >= 0.0) return false;
     if (until_search_ < 0.0) {
         search(pose);
+        lower_limits();
         until_search_ = reach_;
     }
     skin_ = std::clamp(20.0 * moved, 0.03 * lattice_.mean_radius, reach_);
@@ -67,12 +71,12 @@ bool Neighbours::follow(std::span<const double> pose, std::span<const domain::Bo
     return true;
 }
 
-double Neighbours::part(std::span<const double> pose, std::span<const domain::BondKind> kind)
+void Neighbours::part(std::span<const double> pose, std::span<const domain::BondKind> kind)
 {
     const Pairs before = std::move(active_);
     choose(pose, kind);
     until_choice_ = std::min(until_choice_, skin_);
-    double energy = 0.0;
+    const auto old = pressed_.size();
     std::size_t q = 0;  // both lists are sorted by (i, j)
     for (std::size_t p = 0; p < active_.i.size(); ++p) {
         const auto behind = [&] {
@@ -80,10 +84,24 @@ double Neighbours::part(std::span<const double> pose, std::span<const domain::Bo
         };
         while (q < before.i.size() && behind()) ++q;
         if (q < before.i.size() && before.i[q] == active_.i[p] && before.j[q] == active_.j[p]) continue;
-        const double gap = apart(active_, p, geometry_, pose.data()).d - active_.limit[p];
-        if (gap < 0.0) energy += 0.5 * lattice_.contact_stiffness * gap * gap;
+        const double distance = apart(active_, p, geometry_, pose.data()).d;
+        if (distance >= active_.limit[p]) continue;
+        active_.limit[p] = distance;
+        pressed_.push_back({active_.i[p], active_.j[p], distance});
     }
-    return energy;
+    if (pressed_.size() == old) return;
+    std::sort(pressed_.begin(), pressed_.end(), by_ends);
+    lower_limits();
+}
+
+/// Contact distances of near pairs that were pressed together when they parted.
+void Neighbours::lower_limits()
+{
+    std::size_t p = 0;
+    for (const PressedPair& pair : pressed_) {
+        while (p < near_.i.size() && (near_.i[p] < pair.i || (near_.i[p] == pair.i && near_.j[p] < pair.j))) ++p;
+        if (p < near_.i.size() && near_.i[p] == pair.i && near_.j[p] == pair.j) near_.limit[p] = pair.limit;
+    }
 }
 
 /// All unbonded pairs nearer than reach, by cells of the current centres.

@@ -29,21 +29,26 @@ struct Pairs {
 /// lattice's. Only pairs that have parted (Holding) are active.
 class Neighbours {
 public:
-    Neighbours(const Lattice& lattice, Geometry geometry);
+    /// @param pressed  what another Neighbours of this motion had found, sorted by (i, j)
+    Neighbours(const Lattice& lattice, Geometry geometry, std::vector<PressedPair> pressed = {});
     /// Makes sure that every pair that touches now is active.
     /// @param pose   shape (n, 8)
     /// @param kind   of each bond now
     /// @param moved  how much nearer any two near elements may have come since the last call, m
     /// @return whether the active pairs have changed
     bool follow(std::span<const double> pose, std::span<const domain::BondKind> kind, double moved);
-    /// Beams have broken: pairs that were held become active. Gives the energy that they hold at once, J.
-    double part(std::span<const double> pose, std::span<const domain::BondKind> kind);
+    /// Beams have broken: pairs that were held become active. Those that overlap start at zero force: their distance
+    /// now becomes their contact distance, so that no energy comes from nowhere.
+    void part(std::span<const double> pose, std::span<const domain::BondKind> kind);
+    /// Sorted by (i, j).
+    const std::vector<PressedPair>& pressed() const { return pressed_; }
     const Pairs& active() const { return active_; }
     std::int64_t searches() const { return searches_; }
 
 private:
     void search(std::span<const double> pose);
     void choose(std::span<const double> pose, std::span<const domain::BondKind> kind);
+    void lower_limits();
 
     const Lattice& lattice_;
     Holding holding_;
@@ -51,6 +56,7 @@ private:
     double reach_, skin_;                               ///< m
     double until_search_ = -1.0, until_choice_ = -1.0;  ///< m of approach left
     Pairs near_, active_;
+    std::vector<PressedPair> pressed_;
     std::int64_t searches_ = 0;
 };
 

@@ -127,7 +127,7 @@ TEST_F(Moving, StoppedAnywhereGoesOnToTheSameBits)
     options.stop_after = MovingOptions{}.stop_after;
     EXPECT_EQ(bits(move(*rig_, l, options)), whole);
     EXPECT_FALSE(std::filesystem::exists(options.restart));
-    std::ofstream(options.restart) << "craze restart 1\n{\"key\": 1}";
+    std::ofstream(options.restart) << "craze restart 2\n{\"key\": 1}";
     EXPECT_THROW(move(*rig_, l, options), InvalidInput);
     std::filesystem::remove_all(options.restart.parent_path());
 }

@@ -1,6 +1,7 @@
 #include "craze/mechanics/holding.hpp"
 
 #include "craze/mechanics/contacts.hpp"
+#include "craze/mechanics/neighbours.hpp"
 #include "support/packings.hpp"
 
 #include <gtest/gtest.h>
@@ -35,6 +36,33 @@ TEST(Holding, AThirdElementHoldsTwoOthersUntilABeamBreaks)
     EXPECT_FALSE(holding.holds(0, 2, kind));
     EXPECT_TRUE(holding.parted(0, 2, false, kind)) << "2 has lost a beam";
     EXPECT_EQ(unilateral_contacts(lattice, kind, true).size(), 2) << "the broken beam and the free contact";
+}
+
+TEST(Neighbours, PressedTogetherWhenTheyPartStartAtZeroForce)
+{
+    const Lattice lattice = bent_triple();
+    std::vector<BondKind> kind = lattice.kind;
+    std::vector<double> pose(24, 0.0), force(18, 0.0);
+    for (const std::size_t e : {0U, 1U, 2U}) pose[8 * e + 7] = 1.0;
+    pose[16] = -0.1;
+    for (const Geometry geometry : {Geometry::corotational, Geometry::small_displacement}) {
+        Neighbours neighbours(lattice, geometry);
+        neighbours.follow(pose, lattice.kind, 0.0);
+        EXPECT_EQ(neighbours.active().size(), 0) << "held";
+        kind[1] = BondKind::contact_beam;
+        neighbours.part(pose, kind);
+        ASSERT_EQ(neighbours.active().size(), 1);
+        EXPECT_NEAR(neighbours.active().limit[0], 1.9, 1e-14);
+        EXPECT_EQ(add_pairs(neighbours.active(), 0, 1, 7.0, geometry, 3, pose.data(), force.data()), 0.0);
+
+        // What goes on from here knows it, and pushes once they come nearer still.
+        Neighbours later(lattice, geometry, neighbours.pressed());
+        auto nearer = pose;
+        nearer[16] = -0.15;
+        later.follow(nearer, kind, 0.0);
+        EXPECT_NEAR(add_pairs(later.active(), 0, 1, 7.0, geometry, 3, nearer.data(), force.data()), 0.5 * 7.0 * 0.0025,
+                    1e-13);
+    }
 }
 
 TEST(Holding, ElementsWithoutACommonOneTouchAcrossACrackOnly)
