@@ -6,6 +6,7 @@
 #include "craze/core/version.hpp"
 #include "craze/io/atomic_file.hpp"
 #include "craze/pipeline/pipeline.hpp"
+#include "craze/reproduce/settings.hpp"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -61,6 +62,32 @@ struct Common {
     fs::path folder() const { return out.empty() ? fs::path("out") / fs::path(settings).stem() : fs::path(out); }
 };
 
+/// What `reproduce` and `fit-coating` share: a recipe that may be left out.
+struct Recipe {
+    std::string settings, out;
+    std::vector<std::string> set;
+    int threads = 0;
+    bool quiet = false;
+
+    void add_to(CLI::App& verb)
+    {
+        verb.add_option("RECIPE", settings,
+                        "settings file with [synth], [reproduce], [fit]; the built-in recipe when left out");
+        verb.add_option("--out", out, "folder for the results")->default_str("out/<verb>");
+        verb.add_option("--set", set, "override one setting: KEY=VALUE, such as reproduce.seeds=[1]; may be repeated")
+            ->allow_extra_args(false);
+        verb.add_option("--threads", threads, "threads to use; 0 means all cores")->check(CLI::Range(0, 4096));
+        verb.add_flag("--quiet", quiet, "print nothing but results and errors");
+    }
+
+    reproduce::AllSettings read() const
+    {
+        set_threads(threads);
+        set_verbosity(quiet ? Verbosity::quiet : Verbosity::normal);
+        return reproduce::read({settings, set});
+    }
+};
+
 int run(int argc, char** argv)
 {
     CLI::App app(
@@ -93,6 +120,36 @@ int run(int argc, char** argv)
         });
     }
 
+    Recipe recipe;
+    std::string size;
+    auto* reproduce_verb = app.add_subcommand("reproduce", "the paper's numbers beside ours, on coatings of known truth");
+    recipe.add_to(*reproduce_verb);
+    reproduce_verb->add_option("--size", size, "small: a cube of 8 um; paper: the paper's box, 92 000 elements")
+        ->check(CLI::IsMember({"small", "paper"}));
+    reproduce_verb->add_flag("--resume", resume, "go on from what an earlier run with the same recipe has finished");
+    reproduce_verb->callback([&] {
+        work = [&] {
+            auto s = recipe.read();
+            if (!size.empty())
+                s.reproduce.size = size == "paper" ? reproduce::Size::paper : reproduce::Size::small;
+            const fs::path out = recipe.out.empty() ? fs::path("out/reproduce") : fs::path(recipe.out);
+            fmt::print("{}", reproduce::page(reproduce::reproduce(s.synth, s.reproduce, {out, resume})));
+        };
+    });
+    auto* fit_verb = app.add_subcommand(
+        "fit-coating", "search the cracks of a recipe for the paper's numbers; says what was fitted and what hangs on what");
+    recipe.add_to(*fit_verb);
+    fit_verb->add_flag("--resume", resume, "take candidates that an earlier run with the same settings has tried");
+    fit_verb->callback([&] {
+        work = [&] {
+            const auto s = recipe.read();
+            const fs::path out = recipe.out.empty() ? fs::path("out/fit-coating") : fs::path(recipe.out);
+            const auto fit = reproduce::fit_coating(s.synth, s.fit, {out, resume});
+            reproduce::save(fit, out);
+            fmt::print("{}", reproduce::page(fit));
+        };
+    });
+
     std::string file;
     bool force = false;
     auto* init = app.add_subcommand("init", "write a settings file with every key, its default, range and meaning");
@@ -111,7 +168,9 @@ int run(int argc, char** argv)
         };
     });
     auto* manual = app.add_subcommand("settings", "print the manual of all settings (Markdown)");
-    manual->callback([&] { work = [] { fmt::print("{}", pipeline::settings_reference()); }; });
+    manual->callback([&] { work = [] {
+            fmt::print("{}{}", pipeline::settings_reference(), reproduce::settings_reference());
+        }; });
 
     try {
         app.parse(argc, argv);

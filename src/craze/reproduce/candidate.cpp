@@ -1,6 +1,7 @@
 #include "craze/reproduce/candidate.hpp"
 
-#include "craze/core/errors.hpp"
+#include "craze/core/progress.hpp"
+#include "craze/io/atomic_file.hpp"
 #include "craze/loading/calibration.hpp"
 #include "craze/loading/specimen.hpp"
 #include "craze/synth/short_way.hpp"
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace craze::reproduce {
 
@@ -20,30 +22,6 @@ std::string constant_thickness(double T)
 {
     return loading::specimen_name(
         {.pores = false, .cracks = true, .thickness = domain::Defects::Thickness::constant, .constant = T});
-}
-
-loading::Settings laboratory(const Study& study, const loading::Calibration& calibration)
-{
-    loading::Settings s;
-    s.beam.calibrate = false;
-    s.beam.given = calibration.beam;
-    s.specimens = {"dense", "pores", "cracks", "both"};
-    s.residual = study.residual;
-    s.moduli.run = study.moduli;
-    s.moduli.specimens = {"dense", "pores", "cracks", "both"};
-    s.uniaxial.run = false;
-    s.triaxial.run = study.triaxial_points > 0;
-    s.triaxial.points = std::max<std::int64_t>(1, study.triaxial_points);
-    s.triaxial.specimens = {"pores", "cracks", "both"};
-    for (const double T : study.thicknesses) {
-        s.specimens.push_back(constant_thickness(T));
-        s.triaxial.specimens.push_back(s.specimens.back());
-    }
-    s.fracture.run = !study.strengths.empty();
-    s.fracture.strengths = study.strengths;
-    s.fracture.crossings = study.crossings;
-    s.fracture.damping = study.damping;
-    return s;
 }
 
 const loading::Curve* triaxial_of(const loading::Response& response, const std::string& specimen)
@@ -67,9 +45,9 @@ void read_thickness(const domain::Discretisation& d, Numbers& numbers)
     numbers["T2.most"] = 1e9 * *std::max_element(T.begin(), T.end());
 }
 
-void read_response(const loading::Response& r, const Study& study, const mechanics::DenseMaterial& dense,
-                   Numbers& numbers)
+void read_response(const loading::Response& r, const Study& study, Numbers& numbers)
 {
+    const mechanics::DenseMaterial& dense = r.calibration.target;
     for (const auto& m : r.moduli) numbers[fmt::format("E.{}.{}", m.specimen, "xyz"[m.axis])] = 1e-9 * m.tension;
     const double K_D = dense.E_D / (3.0 * (1.0 - 2.0 * dense.nu_D));
     for (const char* specimen : {"pores", "cracks", "both"})
@@ -94,7 +72,78 @@ void read_response(const loading::Response& r, const Study& study, const mechani
     }
 }
 
+/// Loads, or takes what an earlier run has loaded under the same key.
+loading::Response kept_load(const domain::Discretisation& discretisation, const loading::Settings& settings,
+                            const std::string& name, const Keep& keep)
+{
+    if (keep.folder.empty()) return loading::load(discretisation, settings);
+    const auto folder = keep.folder / name, stamp = folder / "stamp.txt";
+    if (keep.resume && std::filesystem::exists(stamp) && io::read_text(stamp) == keep.key) {
+        say(fmt::format("reproduce: {} unchanged, skipped", folder.string()));
+        return loading::load_response(folder);
+    }
+    if (!keep.resume) std::filesystem::remove_all(folder);
+    std::filesystem::remove(stamp);
+    auto response = loading::load(discretisation, settings, folder);
+    loading::save(response, folder);
+    io::write_text(stamp, keep.key);
+    return response;
+}
+
 }  // namespace
+
+loading::Settings laboratory(const Study& study, const loading::Calibration& calibration)
+{
+    loading::Settings s;
+    s.beam.calibrate = false;
+    s.beam.given = calibration.beam;
+    s.specimens = {"dense", "pores", "cracks", "both"};
+    s.residual = study.residual;
+    s.moduli.run = study.moduli;
+    s.moduli.specimens = s.specimens;
+    s.uniaxial.run = study.uniaxial_points > 0;
+    s.uniaxial.points = std::max<std::int64_t>(1, study.uniaxial_points);
+    s.uniaxial.compression = 5.9e-3;  // Fig. 19 is taken there
+    s.triaxial.run = study.triaxial_points > 0;
+    s.triaxial.points = std::max<std::int64_t>(1, study.triaxial_points);
+    s.triaxial.specimens = {"pores", "cracks", "both"};
+    if (study.closed) s.triaxial.specimens.insert(s.triaxial.specimens.end(), {"dense", "cracks closed", "both closed"});
+    for (const double T : study.thicknesses) {
+        s.specimens.push_back(constant_thickness(T));
+        s.triaxial.specimens.push_back(s.specimens.back());
+    }
+    return s;
+}
+
+std::vector<loading::Settings> fracture_laboratories(const Study& study, const loading::Calibration& calibration)
+{
+    loading::Settings quiet;
+    quiet.beam.calibrate = false;
+    quiet.beam.given = calibration.beam;
+    quiet.specimens = {"both"};
+    quiet.moduli.run = quiet.uniaxial.run = quiet.triaxial.run = false;
+    quiet.fracture.run = true;
+    quiet.fracture.crossings = study.crossings;
+    quiet.fracture.damping = study.damping;
+    std::vector<loading::Settings> all;
+    for (const double strength : study.strengths) {
+        auto s = quiet;
+        s.fracture.strengths = {strength};
+        // The strain of failure grows with the strength of the bonds, and so must the path.
+        s.fracture.tension = study.tension * strength / 10e9;
+        s.fracture.compression = study.compression * strength / 10e9;
+        all.push_back(s);
+    }
+    if (!study.cycles.empty() && !study.strengths.empty()) {
+        auto s = quiet;
+        s.fracture.strengths = {study.strengths.front()};
+        s.fracture.tension = s.fracture.compression = 0.0;
+        s.fracture.cycles = study.cycles;
+        s.fracture.crossings *= static_cast<double>(study.cycles.size());
+        all.push_back(s);
+    }
+    return all;
+}
 
 Bench make_bench(const Vec3& box, const Study& study, std::int64_t seed, bool calibrate)
 {
@@ -102,38 +151,46 @@ Bench make_bench(const Vec3& box, const Study& study, std::int64_t seed, bool ca
     bench.R_DE = study.domain.mean_radius.value_or(200e-9);
     domain::Settings settings = study.domain;
     settings.seed = seed;
+    if (!study.near_contacts) settings.near_gap = 0.0;
     bench.dense = domain::pack(box, bench.R_DE, settings);
-    if (!study.near_contacts) bench.dense.near = {};
     const mechanics::DenseMaterial ceramic = loading::dense_material({});
     bench.calibration = calibrate ? loading::calibrate(bench.dense, ceramic, {})
                                   : loading::measure_given(bench.dense, ceramic, mechanics::BeamMaterial{}, {});
     return bench;
 }
 
-Candidate measure(domain::Discretisation discretisation, const Bench& bench, const Study& study)
+Numbers numbers_of(const domain::Discretisation& discretisation, const loading::Response& response, const Study& study)
 {
-    Candidate out;
-    out.numbers["elements"] = discretisation.dense.elements.size();
-    out.numbers["bonds"] = discretisation.dense.bonds.size();
-    out.numbers["E_B"] = 1e-9 * bench.calibration.beam.E_B;
-    out.numbers["r_tilde"] = bench.calibration.beam.r_tilde;
-    out.numbers["p_DE"] = 100.0 * domain::discrete_porosity(discretisation);
-    read_thickness(discretisation, out.numbers);
-    out.response = loading::load(discretisation, laboratory(study, bench.calibration));
-    read_response(out.response, study, bench.calibration.target, out.numbers);
-    out.discretisation = std::move(discretisation);
-    return out;
+    Numbers numbers;
+    numbers["elements"] = discretisation.dense.elements.size();
+    numbers["bonds"] = discretisation.dense.bonds.size();
+    numbers["E_B"] = 1e-9 * response.calibration.beam.E_B;
+    numbers["r_tilde"] = response.calibration.beam.r_tilde;
+    numbers["p_DE"] = 100.0 * domain::discrete_porosity(discretisation);
+    read_thickness(discretisation, numbers);
+    read_response(response, study, numbers);
+    return numbers;
 }
 
-Candidate measure(const synth::Settings& recipe, std::int64_t seed, const Bench& bench, const Study& study)
+Candidate measure(const synth::Settings& recipe, const Bench& bench, const Study& study, const Keep& keep)
 {
-    synth::Settings settings = recipe;
-    settings.seed = seed;
-    const synth::Coating coating = synth::make_coating(settings);
+    const synth::Coating coating = synth::make_coating(recipe);
     const synth::Sight sight =
-        study.as_seen ? synth::Sight(settings.microscope, settings.voxel_size, study.threshold) : synth::Sight();
+        study.as_seen ? synth::Sight(recipe.microscope, recipe.voxel_size, study.threshold) : synth::Sight();
     const double R_B = bench.calibration.beam.r_tilde * bench.R_DE;
-    Candidate out = measure(synth::discretise(coating, bench.dense, R_B, sight), bench, study);
+    Candidate out;
+    out.discretisation = synth::discretise(coating, bench.dense, R_B, sight);
+    out.response = kept_load(out.discretisation, laboratory(study, bench.calibration), "elastic", keep);
+    for (const auto& fracture : fracture_laboratories(study, bench.calibration)) {
+        const auto name = fmt::format("{}_{:g}_GPa", fracture.fracture.cycles.empty() ? "fracture" : "cycles",
+                                      1e-9 * fracture.fracture.strengths.front());
+        auto more = kept_load(out.discretisation, fracture, name, keep);
+        std::move(more.curves.begin(), more.curves.end(), std::back_inserter(out.response.curves));
+        std::move(more.strengths.begin(), more.strengths.end(), std::back_inserter(out.response.strengths));
+        out.response.seconds += more.seconds;
+    }
+    out.response.calibration = bench.calibration;
+    out.numbers = numbers_of(out.discretisation, out.response, study);
     const Vec3& size = coating.size;
     const auto porosity = synth::porosity(coating, std::cbrt(size.x * size.y * size.z) / 192.0);
     out.numbers["porosity.total"] = 100.0 * porosity.total;

@@ -7,16 +7,23 @@
 #include "craze/reproduce/targets.hpp"
 #include "craze/synth/synth.hpp"
 
+#include <filesystem>
+
 namespace craze::reproduce {
 
 /// What is measured, and how.
 struct Study {
     bool moduli = true;                 ///< Table 3
+    std::int64_t uniaxial_points = 0;   ///< points of each stress-strain curve; 0: none [Fig. 18]
     std::int64_t triaxial_points = 15;  ///< points to eta = 1.5 %; 0: none [Fig. 21]
+    bool closed = false;                ///< dense and closed cracks under triaxial compression too [Fig. 21]
     std::vector<double> thicknesses;    ///< constant thicknesses, cracks only, m [Fig. 22]
     std::vector<double> strengths;      ///< sigma_failure, Pa, along x [Table 4]
+    double tension = 1.5e-3;            ///< strain at the end of a tension with bonds of 10 GPa; others in proportion
+    double compression = 4.5e-3;        ///< and of a compression
     double crossings = 40.0;            ///< duration of fracture loadings, wave crossings
     double damping = 1.0;
+    std::vector<double> cycles;  ///< peaks of strain of a cycled loading at the first strength; none: no cycles [Fig. 25]
     /// Let unbonded neighbours push [Eq. 5]. Our reading: off in states of rest. The paper's dense and porous samples
     /// are linear in compression; with these contacts they stiffen by a tenth (docs/reproduction.md).
     bool near_contacts = false;
@@ -35,16 +42,29 @@ struct Bench {
 /// @param calibrate  false: Table 2's beams
 Bench make_bench(const Vec3& box, const Study& study, std::int64_t seed, bool calibrate);
 
+/// The elastic loadings of a study, with the bench's beams.
+loading::Settings laboratory(const Study& study, const loading::Calibration& calibration);
+/// One laboratory for each strength of the bonds, and one for cycles.
+std::vector<loading::Settings> fracture_laboratories(const Study& study, const loading::Calibration& calibration);
+
 struct Candidate {
     domain::Discretisation discretisation;
     loading::Response response;
     Numbers numbers;  ///< keys of targets()
 };
 
-/// The recipe with this seed, by the short way.
-Candidate measure(const synth::Settings& recipe, std::int64_t seed, const Bench& bench, const Study& study);
-/// Any discretisation (made from images, say): the same numbers, without porosities.
-Candidate measure(domain::Discretisation discretisation, const Bench& bench, const Study& study);
+/// Where the loadings of a coating are kept as they come, so that stopped work can go on.
+struct Keep {
+    std::filesystem::path folder;  ///< empty: nowhere
+    std::string key;               ///< of all that decides them
+    bool resume = false;           ///< take what was finished under the same key
+};
+
+/// The recipe and its seed, by the short way.
+Candidate measure(const synth::Settings& recipe, const Bench& bench, const Study& study, const Keep& keep = {});
+/// The numbers of a discretisation and of what its loadings gave, without porosities.
+Numbers numbers_of(const domain::Discretisation& discretisation, const loading::Response& response,
+                   const Study& study);
 
 /// The constant thickness whose P(eta) is nearest to the T2 curve of the cracks-only specimen, m: least squares,
 /// interpolated between the thicknesses tried. 0 where the response has no such curves. [4.2.3]

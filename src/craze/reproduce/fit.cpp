@@ -1,8 +1,10 @@
 #include "craze/reproduce/fit.hpp"
 
 #include "craze/core/errors.hpp"
+#include "craze/core/hash.hpp"
 #include "craze/core/json.hpp"
 #include "craze/core/progress.hpp"
+#include "craze/core/version.hpp"
 #include "craze/io/atomic_file.hpp"
 #include "craze/pipeline/settings_file.hpp"
 
@@ -27,8 +29,8 @@ std::vector<Parameter> chosen(const FitSettings& settings)
 
 class Search {
 public:
-    Search(const synth::Settings& start, const FitSettings& settings)
-        : recipe_(start), settings_(settings), parameters_(chosen(settings))
+    Search(const synth::Settings& start, const FitSettings& settings, const Place& place)
+        : recipe_(start), settings_(settings), parameters_(chosen(settings)), place_(place)
     {
         const auto edge = std::max<std::int64_t>(16, std::lround(settings.box / recipe_.voxel_size));
         recipe_.shape = {edge, edge, edge};
@@ -57,10 +59,11 @@ public:
 
     Trial tried(const std::vector<double>& values, Progress& progress) const
     {
-        const synth::Settings recipe = recipe_with(values, recipe_);
+        synth::Settings recipe = recipe_with(values, recipe_);
         std::vector<Numbers> seeds;
         for (std::size_t s = 0; s < benches_.size(); ++s) {
-            seeds.push_back(measure(recipe, settings_.seeds[s], benches_[s], study_).numbers);
+            recipe.seed = settings_.seeds[s];
+            seeds.push_back(candidate(recipe, benches_[s]));
             progress.advance();
         }
         Trial trial{values, statistics(seeds), 0.0};
@@ -89,16 +92,33 @@ public:
     std::size_t size() const { return parameters_.size(); }
 
 private:
+    /// Measured, or taken from where an earlier search left it.
+    Numbers candidate(synth::Settings recipe, const Bench& bench) const
+    {
+        if (place_.folder.empty()) return measure(recipe, bench, study_).numbers;
+        const auto text = pipeline::settings_json([&](Schema& schema) { describe(schema, recipe); }, false).dump();
+        const auto how = fmt::format("{} {} {}", study_.triaxial_points, study_.crossings, study_.strengths.size());
+        const auto file =
+            place_.folder / "candidates" / (Hash().add(version).add(text).add(how).digest() + ".json");
+        if (place_.resume && std::filesystem::exists(file))
+            if (const Json kept = Json::parse(io::read_text(file), nullptr, false); kept.is_object())
+                return kept.get<Numbers>();
+        Numbers numbers = measure(recipe, bench, study_).numbers;
+        io::write_text(file, Json(numbers).dump(1) + "\n");
+        return numbers;
+    }
+
     synth::Settings recipe_;
     FitSettings settings_;
     std::vector<Parameter> parameters_;
     std::vector<Bench> benches_;
     Study study_;
+    Place place_;
 };
 
 }  // namespace
 
-Fit fit_coating(const synth::Settings& start, const FitSettings& settings)
+Fit fit_coating(const synth::Settings& start, const FitSettings& settings, const Place& place)
 {
     check(settings);
     synth::check(start);
@@ -109,7 +129,7 @@ Fit fit_coating(const synth::Settings& start, const FitSettings& settings)
             "density: the first upright (normals about x and y), the second lying (about z)");
     synth::Settings from = start;
     for (auto& c : from.cracks) c.porosity = 0.0;  // openings as drawn: their median is a parameter
-    const Search search(from, settings);
+    const Search search(from, settings, place);
     const auto per_round = static_cast<std::int64_t>((search.size() + 2) * settings.seeds.size());
     Progress progress("fit-coating: candidates", std::max<std::int64_t>(1, settings.rounds) * per_round);
 

@@ -46,6 +46,12 @@ struct Trial {
     double misfit = 0.0;  ///< root mean square over the targets of (ours / paper - 1) / goal
 };
 
+/// Where work stands on disk.
+struct Place {
+    std::filesystem::path folder;  ///< empty: nothing is written
+    bool resume = false;           ///< take what was finished with the same recipe and settings
+};
+
 struct Fit {
     synth::Settings recipe;   ///< the best, with the box that the search was given
     std::vector<Trial> path;  ///< best so far, after each round; the first is the start
@@ -56,8 +62,9 @@ struct Fit {
 
 /// Least squares on the logarithms of the parameters (Gauss-Newton, damped by Levenberg and Marquardt), each candidate
 /// on the same seeds so that differences are not noise.
+/// @param place  candidates are kept in <folder>/candidates as they come; a search that goes on takes them from there
 /// @throws InvalidInput  when the recipe has not the populations that the parameters ask for
-Fit fit_coating(const synth::Settings& start, const FitSettings& settings);
+Fit fit_coating(const synth::Settings& start, const FitSettings& settings, const Place& place = {});
 
 /// fit.json, recipe.toml (section [synth], ready for use) and fit.md in `folder`.
 void save(const Fit& fit, const std::filesystem::path& folder);

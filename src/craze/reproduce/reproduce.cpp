@@ -1,9 +1,13 @@
 #include "craze/reproduce/reproduce.hpp"
 
 #include "craze/core/errors.hpp"
+#include "craze/core/hash.hpp"
+#include "craze/core/json.hpp"
 #include "craze/core/progress.hpp"
+#include "craze/core/version.hpp"
 #include "craze/loading/theory.hpp"
-#include "craze/mesh/mesh.hpp"
+#include "craze/pipeline/pipeline.hpp"
+#include "craze/pipeline/steps.hpp"
 
 #include <fmt/format.h>
 
@@ -12,30 +16,71 @@
 
 namespace craze::reproduce {
 
+namespace fs = std::filesystem;
+
 namespace {
 
-constexpr double R_C = 8.5;  // px [2.4.3]
+constexpr double R_C = 8.5 * 23.6e-9, R_E = 4.5 * 23.6e-9;  // m [2.4.3]
 
-/// The image chain without its cleaning: a microscope with blur and partial volume, but no noise, stripes or shading.
-Candidate by_images(synth::Settings recipe, std::int64_t seed, const Bench& bench, const Study& study)
+Study study_of(const Settings& s)
 {
-    recipe.seed = seed;
-    auto& m = recipe.microscope;
-    m.noise = m.stripes = m.shading_x = m.shading_y = m.shading_z = m.drift = m.thickness_jitter = 0.0;
-    microstructure::Settings classes;
-    classes.R_C = R_C;
-    auto micro = microstructure::classify(synth::observe(synth::make_coating(recipe), recipe).stack, classes);
-    const auto sheet = mesh::mesh_cracks(micro.crack, recipe.voxel_size, {});
-    const auto voxels = static_cast<double>(micro.matter.shape().voxels());
-    const double pores = 100.0 * static_cast<double>(micro.pore.count()) / voxels,
-                 cracks = 100.0 * static_cast<double>(micro.crack.count()) / voxels;
-    domain::Settings cutting = study.domain;
-    cutting.r_tilde = bench.calibration.beam.r_tilde;
-    Candidate out = measure(domain::discretise(bench.dense, micro, sheet, cutting), bench, study);
-    out.numbers["porosity.pores"] = pores;
-    out.numbers["porosity.cracks"] = cracks;
-    out.numbers["porosity.total"] = pores + cracks;
-    return out;
+    Study study;
+    study.uniaxial_points = s.uniaxial_points;
+    study.triaxial_points = s.triaxial_points;
+    study.closed = true;
+    study.thicknesses = s.thicknesses;
+    study.strengths = s.strengths;
+    study.tension = s.tension;
+    study.compression = s.compression;
+    study.crossings = s.crossings;
+    study.damping = s.damping;
+    study.cycles = s.cycles;
+    study.near_contacts = s.near_contacts;
+    return study;
+}
+
+/// All that decides what a seed gives.
+std::string key_of(synth::Settings recipe, const Settings& settings, std::int64_t seed)
+{
+    const auto text = [](auto& value) {
+        return pipeline::settings_json([&](Schema& schema) { describe(schema, value); }, false).dump();
+    };
+    Settings s = settings;
+    s.seeds = {seed};
+    s.images = false;
+    s.fitted.clear();
+    s.cycles = seed == settings.seeds.front() ? s.cycles : std::vector<double>{};
+    return Hash().add(version).add(text(recipe)).add(text(s)).digest();
+}
+
+/// The first coating as images, with every fault of the microscope, through the whole chain.
+Numbers by_images(const synth::Settings& coating, const Bench& bench, Study study, const Place& place)
+{
+    pipeline::Settings p;
+    p.synth = coating;
+    p.microstructure.R_C = R_C / coating.voxel_size;
+    p.microstructure.R_E = R_E / coating.voxel_size;
+    p.domain = study.domain;
+    p.domain.seed = coating.seed;
+    p.domain.mean_radius = bench.R_DE;
+    p.domain.r_tilde = bench.calibration.beam.r_tilde;
+    if (!study.near_contacts) p.domain.near_gap = 0.0;
+    study.thicknesses.clear();  // they say nothing about how a coating was read
+    study.strengths.resize(std::min<std::size_t>(1, study.strengths.size()));
+    study.cycles.clear();
+    p.loading = laboratory(study, bench.calibration);
+    if (const auto fracture = fracture_laboratories(study, bench.calibration); !fracture.empty())
+        p.loading.fracture = fracture.front().fracture;
+    p.loading.output.states = {-5.9e-3};
+    pipeline::check(p);
+    pipeline::run(p, {"", place.folder, {}, place.resume});
+
+    Numbers numbers = numbers_of(domain::load_discretisation(place.folder / "domain"),
+                                 loading::load_response(place.folder / "loading"), study);
+    const Json micro = pipeline::read_summary(place.folder, "microstructure");
+    for (const char* part : {"total", "pores", "cracks"})
+        numbers[fmt::format("porosity.{}", part)] = 100.0 * micro.at("porosity").at(part).get<double>();
+    return numbers;
 }
 
 }  // namespace
@@ -49,17 +94,24 @@ std::vector<std::int64_t> shape_of(Size size, double voxel_size)
 
 void describe(Schema& schema, Settings& s)
 {
+    constexpr Range strain{0.0, 0.2};
     schema.option("size", s.size, {"small", "paper"}, "a cube of 8 um, or the paper's box");
     schema.integers("seeds", s.seeds, {0, 9e15}, "one coating and one packing each");
     schema.flag("images", s.images, "send the first seed through the image chain too");
     schema.flag("calibrate", s.calibrate, "beams for each packing; else those of Table 2");
+    schema.integer("uniaxial_points", s.uniaxial_points, {0, 500}, "points of the stress-strain curves; 0: none");
     schema.integer("triaxial_points", s.triaxial_points, {3, 500}, "points of the triaxial curves");
     schema.quantities("thicknesses", s.thicknesses, Dimension::length, {0, 1e-6},
                       "constant crack thicknesses of Fig. 22");
     schema.quantities("strengths", s.strengths, Dimension::pressure, {1e6, 1e13},
                       "bond strengths of Table 4; none: no fracture");
+    schema.quantity("tension", s.tension, Dimension::fraction, strain,
+                    "strain at the end of a tension with bonds of 10 GPa; others in proportion");
+    schema.quantity("compression", s.compression, Dimension::fraction, strain, "the same in compression");
     schema.number("crossings", s.crossings, {1, 1e4}, "wave crossings of a fracture loading");
     schema.number("damping", s.damping, {0, 1e3}, "times the reference damping");
+    schema.quantities("cycles", s.cycles, Dimension::fraction, {-0.2, 0.2},
+                      "peaks of strain at the first strength, first seed only; none: no cycles");
     schema.flag("near_contacts", s.near_contacts, "let unbonded neighbours push in states of rest");
     schema.texts("fitted", s.fitted, "numbers that the recipe was fitted to");
 }
@@ -67,45 +119,53 @@ void describe(Schema& schema, Settings& s)
 void check(const Settings& s)
 {
     if (s.seeds.empty()) throw InvalidInput("reproduce.seeds: needs at least one");
+    for (std::size_t i = 0; i < s.seeds.size(); ++i)
+        if (std::count(s.seeds.begin(), s.seeds.end(), s.seeds[i]) > 1)
+            throw InvalidInput(fmt::format("reproduce.seeds: each counts once, got {} twice", s.seeds[i]));
     for (const auto& key : s.fitted) target(key);
 }
 
-Reproduction reproduce(const synth::Settings& recipe, const Settings& settings, const std::filesystem::path& folder)
+Reproduction reproduce(const synth::Settings& recipe, const Settings& settings, const Place& place)
 {
     check(settings);
+    synth::check(recipe);
+    if (settings.images && place.folder.empty())
+        throw InvalidInput("reproduce.images: the image chain needs a folder to work in");
     const Stopwatch watch;
     synth::Settings coating = recipe;
     coating.shape = shape_of(settings.size, recipe.voxel_size);
-    Study study;
-    study.triaxial_points = settings.triaxial_points;
-    study.thicknesses = settings.thicknesses;
-    study.strengths = settings.strengths;
-    study.crossings = settings.crossings;
-    study.damping = settings.damping;
-    study.near_contacts = settings.near_contacts;
+    const Study study = study_of(settings);
 
     Reproduction out;
     out.settings = settings;
-    Progress progress("reproduce: coatings", std::ssize(settings.seeds) + (settings.images ? 1 : 0));
     for (const auto seed : settings.seeds) {
+        say(fmt::format("reproduce: seed {} ({} of {})", seed, out.seeds.size() + 1, settings.seeds.size()));
+        const bool first = out.seeds.empty();
         const Bench bench = make_bench(synth::box_of(coating), study, seed, settings.calibrate);
-        Candidate candidate = measure(coating, seed, bench, study);
-        if (!folder.empty()) loading::save(candidate.response, folder / fmt::format("seed_{}", seed));
+        Study mine = study;
+        if (!first) mine.cycles.clear();
+        Keep keep;
+        if (!place.folder.empty())
+            keep = {place.folder / "reproduce" / fmt::format("seed_{}", seed), key_of(coating, settings, seed),
+                    place.resume};
+        coating.seed = seed;
+        Candidate candidate = measure(coating, bench, mine, keep);
         out.seeds.push_back(std::move(candidate.numbers));
         out.curves.push_back(std::move(candidate.response));
-        progress.advance();
-        if (!settings.images || seed != settings.seeds.front()) continue;
-        Study short_study = study;  // strengths and constant thicknesses say nothing about how a coating was read
-        short_study.strengths.clear();
-        short_study.thicknesses.clear();
-        out.images = by_images(coating, seed, bench, short_study).numbers;
-        progress.advance();
+        if (first && settings.images) {
+            say("reproduce: the first seed by images");
+            out.images = by_images(coating, bench, study, place);
+        }
     }
     const auto ceramic = loading::dense_material({});
     const double p = statistics(out.seeds).at("p_DE").mean / 100.0;
     out.E_eq18 = 1e-9 * loading::porous_modulus({ceramic.E_D, ceramic.nu_D}, p);
     out.E_bound = 1e-9 * loading::hashin_shtrikman({ceramic.E_D, ceramic.nu_D}, p).E;
     out.seconds = watch.seconds();
+    if (!place.folder.empty()) {
+        save(out, place.folder / "reproduce");
+        report::write_report(place.folder, {});
+    }
     return out;
 }
 

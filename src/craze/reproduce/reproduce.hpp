@@ -21,13 +21,16 @@ enum class Size {
 struct Settings {
     Size size = Size::small;
     std::vector<std::int64_t> seeds{1, 2, 3};
-    bool images = true;     ///< the first seed through the image chain too: stack, threshold, classes, mesh, T2
+    bool images = true;     ///< the first seed through the whole image chain too
     bool calibrate = true;  ///< beams for each packing; else Table 2's
-    std::int64_t triaxial_points = 15;
-    std::vector<double> thicknesses{20e-9, 30e-9, 40e-9, 50e-9, 70e-9};  ///< constant, cracks only [Fig. 22]
-    std::vector<double> strengths{10e9, 20e9, 30e9, 40e9, 50e9};         ///< sigma_failure, Pa [Table 4]
-    double crossings = 40.0;                                             ///< wave crossings of a fracture loading
+    std::int64_t uniaxial_points = 8;   ///< 0: none [Fig. 18]
+    std::int64_t triaxial_points = 15;  ///< [Fig. 21]
+    std::vector<double> thicknesses{2e-9, 10e-9, 20e-9, 40e-9, 60e-9, 100e-9};  ///< constant, cracks only [Fig. 22]
+    std::vector<double> strengths{10e9, 20e9, 30e9, 40e9, 50e9};                ///< sigma_failure, Pa [Table 4]
+    double tension = 1.5e-3, compression = 4.5e-3;  ///< see Study
+    double crossings = 40.0;                        ///< wave crossings of a fracture loading
     double damping = 1.0;
+    std::vector<double> cycles{-1e-3, -2e-3, -3e-3};          ///< peaks of strain, first seed only [Fig. 25]
     bool near_contacts = false;                               ///< see Study
     std::vector<std::string> fitted = FitSettings{}.targets;  ///< which numbers the recipe was fitted to
 };
@@ -47,15 +50,15 @@ struct Reproduction {
     double seconds = 0.0;
 };
 
-/// Packs, calibrates and loads one coating for each seed. The recipe's box is set by the size.
-/// @param folder  curves of every seed go to folder/seed_<n> as they come; empty: nowhere
-Reproduction reproduce(const synth::Settings& recipe, const Settings& settings,
-                       const std::filesystem::path& folder = {});
+/// Packs, calibrates and loads one coating for each seed by the short way, into <folder>/reproduce/seed_<n>; the first
+/// seed goes through the image chain too, into the folder's rooms. The recipe's box is set by the size.
+/// @throws InvalidInput  when the settings are wrong, before any work starts
+Reproduction reproduce(const synth::Settings& recipe, const Settings& settings, const Place& place = {});
 
 /// Each number: paper, ours with its spread, fitted or predicted, difference. Markdown.
 std::string page(const Reproduction& result);
 Json summary(const Reproduction& result);
-/// reproduction.md, summary as reproduction.json, Figs. 21 and 22 as SVG and CSV.
+/// reproduction.md, summary as reproduction.json, Figs. 18 and 21 to 25 as SVG and CSV.
 void save(const Reproduction& result, const std::filesystem::path& folder);
 
 }  // namespace craze::reproduce

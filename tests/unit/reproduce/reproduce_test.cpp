@@ -93,7 +93,7 @@ TEST(FitSettings, ThatCannotWorkAreRefused)
     refused([](FitSettings& s) { s.seeds.clear(); });
     synth::Settings recipe;
     recipe.cracks.pop_back();
-    EXPECT_THROW(fit_coating(recipe, {}), InvalidInput);
+    EXPECT_THROW(fit_coating(recipe, FitSettings{}), InvalidInput);
 }
 
 // One tiny search: it must not make the misfit worse, and must say what hangs on what.
