@@ -122,7 +122,8 @@ int run(int argc, char** argv)
 
     Recipe recipe;
     std::string size;
-    auto* reproduce_verb = app.add_subcommand("reproduce", "the paper's numbers beside ours, on coatings of known truth");
+    auto* reproduce_verb =
+        app.add_subcommand("reproduce", "the paper's numbers beside ours, on coatings of known truth");
     recipe.add_to(*reproduce_verb);
     reproduce_verb->add_option("--size", size, "small: a cube of 8 um; paper: the paper's box, 92 000 elements")
         ->check(CLI::IsMember({"small", "paper"}));
@@ -130,14 +131,14 @@ int run(int argc, char** argv)
     reproduce_verb->callback([&] {
         work = [&] {
             auto s = recipe.read();
-            if (!size.empty())
-                s.reproduce.size = size == "paper" ? reproduce::Size::paper : reproduce::Size::small;
+            if (!size.empty()) s.reproduce.size = size == "paper" ? reproduce::Size::paper : reproduce::Size::small;
             const fs::path out = recipe.out.empty() ? fs::path("out/reproduce") : fs::path(recipe.out);
             fmt::print("{}", reproduce::page(reproduce::reproduce(s.synth, s.reproduce, {out, resume})));
         };
     });
     auto* fit_verb = app.add_subcommand(
-        "fit-coating", "search the cracks of a recipe for the paper's numbers; says what was fitted and what hangs on what");
+        "fit-coating",
+        "search the cracks of a recipe for the paper's numbers; says what was fitted and what hangs on what");
     recipe.add_to(*fit_verb);
     fit_verb->add_flag("--resume", resume, "take candidates that an earlier run with the same settings has tried");
     fit_verb->callback([&] {
@@ -168,9 +169,8 @@ int run(int argc, char** argv)
         };
     });
     auto* manual = app.add_subcommand("settings", "print the manual of all settings (Markdown)");
-    manual->callback([&] { work = [] {
-            fmt::print("{}{}", pipeline::settings_reference(), reproduce::settings_reference());
-        }; });
+    manual->callback(
+        [&] { work = [] { fmt::print("{}{}", pipeline::settings_reference(), reproduce::settings_reference()); }; });
 
     try {
         app.parse(argc, argv);

@@ -107,7 +107,8 @@ loading::Settings laboratory(const Study& study, const loading::Calibration& cal
     s.triaxial.run = study.triaxial_points > 0;
     s.triaxial.points = std::max<std::int64_t>(1, study.triaxial_points);
     s.triaxial.specimens = {"pores", "cracks", "both"};
-    if (study.closed) s.triaxial.specimens.insert(s.triaxial.specimens.end(), {"dense", "cracks closed", "both closed"});
+    if (study.closed)
+        s.triaxial.specimens.insert(s.triaxial.specimens.end(), {"dense", "cracks closed", "both closed"});
     for (const double T : study.thicknesses) {
         s.specimens.push_back(constant_thickness(T));
         s.triaxial.specimens.push_back(s.specimens.back());

@@ -23,7 +23,8 @@ struct Study {
     double compression = 4.5e-3;        ///< and of a compression
     double crossings = 40.0;            ///< duration of fracture loadings, wave crossings
     double damping = 1.0;
-    std::vector<double> cycles;  ///< peaks of strain of a cycled loading at the first strength; none: no cycles [Fig. 25]
+    std::vector<double>
+        cycles;  ///< peaks of strain of a cycled loading at the first strength; none: no cycles [Fig. 25]
     /// Let unbonded neighbours push [Eq. 5]. Our reading: off in states of rest. The paper's dense and porous samples
     /// are linear in compression; with these contacts they stiffen by a tenth (docs/reproduction.md).
     bool near_contacts = false;
@@ -63,8 +64,7 @@ struct Keep {
 /// The recipe and its seed, by the short way.
 Candidate measure(const synth::Settings& recipe, const Bench& bench, const Study& study, const Keep& keep = {});
 /// The numbers of a discretisation and of what its loadings gave, without porosities.
-Numbers numbers_of(const domain::Discretisation& discretisation, const loading::Response& response,
-                   const Study& study);
+Numbers numbers_of(const domain::Discretisation& discretisation, const loading::Response& response, const Study& study);
 
 /// The constant thickness whose P(eta) is nearest to the T2 curve of the cracks-only specimen, m: least squares,
 /// interpolated between the thicknesses tried. 0 where the response has no such curves. [4.2.3]

@@ -98,8 +98,7 @@ private:
         if (place_.folder.empty()) return measure(recipe, bench, study_).numbers;
         const auto text = pipeline::settings_json([&](Schema& schema) { describe(schema, recipe); }, false).dump();
         const auto how = fmt::format("{} {} {}", study_.triaxial_points, study_.crossings, study_.strengths.size());
-        const auto file =
-            place_.folder / "candidates" / (Hash().add(version).add(text).add(how).digest() + ".json");
+        const auto file = place_.folder / "candidates" / (Hash().add(version).add(text).add(how).digest() + ".json");
         if (place_.resume && std::filesystem::exists(file))
             if (const Json kept = Json::parse(io::read_text(file), nullptr, false); kept.is_object())
                 return kept.get<Numbers>();

@@ -48,16 +48,19 @@ std::string key_of(synth::Settings recipe, const Settings& settings, std::int64_
     Settings s = settings;
     s.seeds = {seed};
     s.images = false;
+    s.search = 21;
     s.fitted.clear();
     s.cycles = seed == settings.seeds.front() ? s.cycles : std::vector<double>{};
     return Hash().add(version).add(text(recipe)).add(text(s)).digest();
 }
 
 /// The first coating as images, with every fault of the microscope, through the whole chain.
-Numbers by_images(const synth::Settings& coating, const Bench& bench, Study study, const Place& place)
+Numbers by_images(const synth::Settings& coating, const Bench& bench, Study study, std::int64_t search,
+                  const Place& place)
 {
     pipeline::Settings p;
     p.synth = coating;
+    p.images.denoise.search = search;
     p.microstructure.R_C = R_C / coating.voxel_size;
     p.microstructure.R_E = R_E / coating.voxel_size;
     p.domain = study.domain;
@@ -98,6 +101,7 @@ void describe(Schema& schema, Settings& s)
     schema.option("size", s.size, {"small", "paper"}, "a cube of 8 um, or the paper's box");
     schema.integers("seeds", s.seeds, {0, 9e15}, "one coating and one packing each");
     schema.flag("images", s.images, "send the first seed through the image chain too");
+    schema.integer("search", s.search, {3, 63}, "its window of non-local means, px, odd");
     schema.flag("calibrate", s.calibrate, "beams for each packing; else those of Table 2");
     schema.integer("uniaxial_points", s.uniaxial_points, {0, 500}, "points of the stress-strain curves; 0: none");
     schema.integer("triaxial_points", s.triaxial_points, {3, 500}, "points of the triaxial curves");
@@ -122,6 +126,7 @@ void check(const Settings& s)
     for (std::size_t i = 0; i < s.seeds.size(); ++i)
         if (std::count(s.seeds.begin(), s.seeds.end(), s.seeds[i]) > 1)
             throw InvalidInput(fmt::format("reproduce.seeds: each counts once, got {} twice", s.seeds[i]));
+    if (s.search % 2 == 0) throw InvalidInput(fmt::format("reproduce.search must be odd, got {}", s.search));
     for (const auto& key : s.fitted) target(key);
 }
 
@@ -154,7 +159,7 @@ Reproduction reproduce(const synth::Settings& recipe, const Settings& settings, 
         out.curves.push_back(std::move(candidate.response));
         if (first && settings.images) {
             say("reproduce: the first seed by images");
-            out.images = by_images(coating, bench, study, place);
+            out.images = by_images(coating, bench, study, settings.search, place);
         }
     }
     const auto ceramic = loading::dense_material({});

@@ -21,14 +21,15 @@ enum class Size {
 struct Settings {
     Size size = Size::small;
     std::vector<std::int64_t> seeds{1, 2, 3};
-    bool images = true;     ///< the first seed through the whole image chain too
-    bool calibrate = true;  ///< beams for each packing; else Table 2's
+    bool images = true;                 ///< the first seed through the whole image chain too
+    std::int64_t search = 21;           ///< window of non-local means, px; smaller is faster [2.3 (3)]
+    bool calibrate = true;              ///< beams for each packing; else Table 2's
     std::int64_t uniaxial_points = 8;   ///< 0: none [Fig. 18]
     std::int64_t triaxial_points = 15;  ///< [Fig. 21]
     std::vector<double> thicknesses{2e-9, 10e-9, 20e-9, 40e-9, 60e-9, 100e-9};  ///< constant, cracks only [Fig. 22]
     std::vector<double> strengths{10e9, 20e9, 30e9, 40e9, 50e9};                ///< sigma_failure, Pa [Table 4]
-    double tension = 1.5e-3, compression = 4.5e-3;  ///< see Study
-    double crossings = 40.0;                        ///< wave crossings of a fracture loading
+    double tension = 1.5e-3, compression = 4.5e-3;                              ///< see Study
+    double crossings = 40.0;  ///< wave crossings of a fracture loading
     double damping = 1.0;
     std::vector<double> cycles{-1e-3, -2e-3, -3e-3};          ///< peaks of strain, first seed only [Fig. 25]
     bool near_contacts = false;                               ///< see Study

@@ -32,7 +32,8 @@ AllSettings read(const pipeline::SettingsSource& source)
 std::string settings_reference()
 {
     AllSettings s;
-    return "\nThe recipe of `craze reproduce` and `craze fit-coating` is a file with `[synth]` and, if wished, these:\n" +
+    return "\nThe recipe of `craze reproduce` and `craze fit-coating` is a file with `[synth]` and, if wished, "
+           "these:\n" +
            pipeline::settings_manual([&](Schema& schema) { describe_studies(schema, s); });
 }
 
