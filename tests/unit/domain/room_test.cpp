@@ -83,7 +83,6 @@ TEST_F(Discretising, TakesTheElementsInPoresAndCutsTheBondsAtTheCrack)
         EXPECT_EQ(d.in_pore[static_cast<std::size_t>(e)] != 0,
                   sample.micro.pore(std::int64_t(c.x), std::int64_t(c.y), std::int64_t(c.z)));
     }
-    EXPECT_NEAR(discrete_porosity(d) / d.p_vx, 1.0, 0.25);  // a pore of some 15 elements
     std::int64_t cut = 0, measured = 0;
     for (std::int32_t b = 0; b < d.dense.bonds.size(); ++b) {
         const auto k = static_cast<std::size_t>(b);
@@ -106,6 +105,19 @@ TEST_F(Discretising, TakesTheElementsInPoresAndCutsTheBondsAtTheCrack)
     }
     EXPECT_GT(cut, 50);
     EXPECT_GT(measured, 5);
+}
+
+TEST_F(Discretising, TakesThePoresShareOfTheMass)
+{
+    // A pore of some 15 elements: one packing scatters by an eighth, the mean of nine by a third of that.
+    double sum = 0.0;
+    for (std::int64_t seed = 1; seed <= 9; ++seed) {
+        Settings settings;
+        settings.seed = seed;
+        const Discretisation d = discretise(sample.micro, sample.surface, Sample::R_C, settings);
+        sum += discrete_porosity(d) / d.p_vx;
+    }
+    EXPECT_NEAR(sum / 9, 1.0, 0.12);
 }
 
 TEST_F(Discretising, CutsBondsByVoxelsAsByTheSheet)
