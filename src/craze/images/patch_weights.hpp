@@ -12,13 +12,11 @@
 
 namespace craze::images {
 
-constexpr std::int64_t row_length = 208;              // voxels in a row of weights
-constexpr std::int64_t padded_row = row_length + 16;  // the same with what the neighbourhood needs beside it
-constexpr std::int64_t chunk = 7;                     // rows of weights summed in 16 bits: 7 x 8191 < 2^16
+constexpr std::int64_t lanes = 16;                      // rows come in multiples of this many voxels
+constexpr std::int64_t longest_row = 16 * lanes;        // voxels in a row of weights
+constexpr std::int64_t longest_column = longest_row + lanes;  // the same with what the neighbourhood needs beside it
+constexpr std::int64_t chunk = 7;                       // rows of weights summed in 16 bits: 7 x 8191 < 2^16
 constexpr std::int32_t weight_of_one = 8191;
-
-/// Voxels along x of a tile whose shifts reach R: the rest of the row of weights is for p - s.
-constexpr std::int64_t tile_nx(std::int64_t R) { return row_length - (R + 15) / 16 * 16; }
 
 /// How differences become weights, in integers.
 struct PatchScale {
@@ -30,42 +28,62 @@ struct PatchScale {
     struct Weights {
         std::uint16_t free = 0;     ///< sum that noise alone explains: weight one
         std::uint16_t most = 0;     ///< sum beyond `free` at which the weight is zero
-        std::uint16_t stretch = 1;  ///< most stretch fills 15 bits
-        std::int16_t slope = 0;     ///< most stretch slope 2^-15 is 10/8 in 2^-13
-        /// exp(-u) = sum_i cubic[i] u^i; 1 and u in 2^-13, u^2 in 2^-15, u^3 in 2^-17
-        std::array<std::int16_t, 4> cubic{8186, -8060, 14423, -11467};
-        std::int16_t quarter = 8192, four = 4;
+        std::uint16_t stretch = 1;  ///< power of two: x = most stretch 2^-15 lies in [1/2, 1)
+        /// exp(-10 t / most) = (sum_i cubic[i] x^i)^8 with x = t stretch 2^-15; in 2^-13
+        std::array<std::int16_t, 4> cubic{};
     } weights;
 };
 
-/// column[i] += (a[i] - b[i])^2 over padded_row values, capped.
-void add_squares(const std::int16_t* a, const std::int16_t* b, std::uint16_t* column, const PatchScale& scale);
-/// The same, and the squares of `old` taken away.
-void slide_squares(const std::int16_t* a, const std::int16_t* b, const std::int16_t* old_a, const std::int16_t* old_b,
-                   std::uint16_t* column, const PatchScale& scale);
+/// One row of voxels p against the rows of p + s, for `count` shifts s that follow each other along x: the pointers are
+/// those of the first shift, the others lie one value further (levels) or one stride further (sums).
+struct PatchRow {
+    std::int64_t length = 0, count = 0, neighbourhood = 0;
+    const std::int16_t *p_new, *p_old;    ///< scaled levels around p, in the plane that enters and the one that leaves
+    const std::int16_t *ps_new, *ps_old;  ///< the same around p + s
+    std::int64_t column_stride, weight_stride;
+    std::uint16_t* column;            ///< length + lanes squares summed along z
+    const std::uint16_t* column_old;  ///< those of the row that leaves the neighbourhood
+    std::uint16_t* band;              ///< columns summed along y
+    std::uint16_t* weight;
+};
 
-/// Sums a row of columns over n neighbours along x into `row`, which holds the row that leaves the running sum
-/// `patch`, and makes weights of the latter unless `weight` is null.
-void sum_patch(const std::uint16_t* column, std::uint16_t* row, std::uint16_t* patch, std::uint16_t* weight,
-               std::int64_t n, const PatchScale& scale);
+/// column += squares of the plane that enters, for the first planes of a tile.
+void start_columns(const PatchRow& r, const PatchScale& scale);
+/// Brings columns (unless `columns_done`) and bands up to date; if `weigh`, sums the bands along x and makes weights.
+void weigh_row(const PatchRow& r, const PatchScale& scale, bool columns_done, bool weigh);
 
 struct Accumulators {
     std::int32_t* weighted;  ///< sum of weight x level, in 2^-8
     std::int32_t* weights;
 };
-struct WeightedRow {
+/// `count` rows of weights and of levels, each one stride further than the row before it.
+struct WeightedRows {
     const std::uint16_t* weight;
     const std::int16_t* level;  ///< << 7
+    std::int64_t weight_stride, level_stride, count;
 };
-/// Adds `chunk` rows of weights and weighted levels to n voxels.
-void add_chunk(const WeightedRow* terms, Accumulators to, std::int64_t n);
-/// The voxel itself, whose weight is one.
-void start_row(const std::int16_t* level, Accumulators to, std::int64_t n);
+/// Adds the weights and weighted levels of all rows to n voxels, n a multiple of lanes.
+void add_rows(const WeightedRows& rows, Accumulators to, std::int64_t n);
 
-inline std::uint8_t level_of(std::int32_t weighted, std::int32_t weights)
+/// Whether the loops written out for AVX2 run here; they give the bits of the plain ones.
+bool spelled_out();
+namespace plain {
+void start_columns(const PatchRow& r, const PatchScale& scale);
+void weigh_row(const PatchRow& r, const PatchScale& scale, bool columns_done, bool weigh);
+void add_rows(const WeightedRows& rows, Accumulators to, std::int64_t n);
+}  // namespace plain
+namespace avx2 {
+void start_columns(const PatchRow& r, const PatchScale& scale);
+void weigh_row(const PatchRow& r, const PatchScale& scale, bool columns_done, bool weigh);
+void add_rows(const WeightedRows& rows, Accumulators to, std::int64_t n);
+}  // namespace avx2
+
+/// The mean, with the voxel itself, whose weight is one.
+inline std::uint8_t level_of(std::uint8_t own, std::int32_t weighted, std::int32_t weights)
 {
-    return static_cast<std::uint8_t>(
-        std::min<std::int64_t>(255, (std::int64_t{256} * weighted + weights / 2) / weights));
+    const std::int64_t sum = std::int64_t{256} * weighted + std::int64_t{weight_of_one} * own;
+    const std::int64_t count = std::int64_t{weights} + weight_of_one;
+    return static_cast<std::uint8_t>(std::min<std::int64_t>(255, (sum + count / 2) / count));
 }
 
 }  // namespace craze::images
