@@ -13,7 +13,7 @@ namespace craze::images {
 namespace {
 
 // Of a tile: what a row of all shifts needs stays in the second-level cache, the sums of a tile in the third.
-constexpr std::int64_t tile_nx = 256, tile_ny = 24, tile_nz = 32;
+constexpr std::int64_t tile_nx = longest_row, tile_ny = 48, tile_nz = 32;
 
 std::int64_t round_up(std::int64_t n, std::int64_t step) { return (n + step - 1) / step * step; }
 
@@ -130,9 +130,18 @@ public:
 private:
     Accumulators sums_at(std::int64_t x, std::int64_t y, std::int64_t z)
     {
-        const auto at = static_cast<std::size_t>(x - x0_ + f_.overrun +
-                                                 sums_nx_ * (y - y0_ + f_.R + sums_ny_ * (z - z0_)));
+        const auto at =
+            static_cast<std::size_t>(x - x0_ + f_.overrun + sums_nx_ * (y - y0_ + f_.R + sums_ny_ * (z - z0_)));
         return {&weighted_[at], &weights_[at]};
+    }
+
+    // The sums of a tile lie in the third-level cache: ask for a row while its weights are made.
+    static void fetch(Accumulators row, std::int64_t n)
+    {
+        for (std::int64_t i = 0; i < n; i += 16) {
+            __builtin_prefetch(row.weighted + i, 1, 2);
+            __builtin_prefetch(row.weights + i, 1, 2);
+        }
     }
 
     // All shifts (sx, sy, sz) with the same sy and sz: they read the same rows, so their sums share the accumulators.
@@ -169,6 +178,8 @@ private:
                 const bool complete = centre >= y_low;
                 const bool here = complete && z >= 0 && centre >= 0 && centre < ny;
                 const bool there = complete && z + sz < nz && centre + sy >= 0 && centre + sy < ny;
+                if (here) fetch(sums_at(x0_, centre, z), length_);
+                if (there) fetch(sums_at(x0_ - f_.overrun, centre + sy, z + sz), length_ + 2 * f_.overrun);
                 weigh_row(r, scale_, z == z_low, here || there);
                 if (here) add_here(r, centre, z, first_sx, sy, sz);
                 if (there) add_there(r, centre, z, first_sx, sy, sz);
@@ -195,9 +206,9 @@ private:
     void add_there(const PatchRow& r, std::int64_t y, std::int64_t z, std::int64_t sx, std::int64_t sy, std::int64_t sz)
     {
         const std::int64_t x = x0_ - f_.overrun;
-        add_rows({r.weight - f_.overrun - sx, slab_.level.data() + slab_.at(x - sx, y, z), weight_stride_ - 1, -1,
-                  r.count},
-                 sums_at(x, y + sy, z + sz), length_ + 2 * f_.overrun);
+        add_rows(
+            {r.weight - f_.overrun - sx, slab_.level.data() + slab_.at(x - sx, y, z), weight_stride_ - 1, -1, r.count},
+            sums_at(x, y + sy, z + sz), length_ + 2 * f_.overrun);
     }
 
     const Frame& f_;
@@ -241,7 +252,8 @@ void filter_slab(const NonLocalMeans& filter, Shape shape, std::int64_t z0, std:
         if (z != last) read(z, slice);
         last = z;
         slab.fill(plane, shape, scale, slice);
-        if (z0 + plane - slab.margin_z == z && z >= z0 && z < z1) std::ranges::copy(slice, result.slice(z - z0).begin());
+        if (z0 + plane - slab.margin_z == z && z >= z0 && z < z1)
+            std::ranges::copy(slice, result.slice(z - z0).begin());
     }
     Sums sums;
     sums.weighted.assign(static_cast<std::size_t>(frame.shape.voxels()), 0);

@@ -66,9 +66,8 @@ void start_columns(const PatchRow& r, const PatchScale& scale)
 {
     for (std::int64_t k = 0; k < r.count; ++k)
         for (std::int64_t i = 0; i < r.length + lanes; ++i)
-            r.column[k * r.column_stride + i] =
-                static_cast<u16>(r.column[k * r.column_stride + i] +
-                                 square(r.p_new[i], r.ps_new[i + k], scale.exact, scale.cap));
+            r.column[k * r.column_stride + i] = static_cast<u16>(
+                r.column[k * r.column_stride + i] + square(r.p_new[i], r.ps_new[i + k], scale.exact, scale.cap));
 }
 
 void weigh_row(const PatchRow& r, const PatchScale& scale, bool columns_done, bool weigh)

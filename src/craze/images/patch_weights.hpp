@@ -12,10 +12,10 @@
 
 namespace craze::images {
 
-constexpr std::int64_t lanes = 16;                      // rows come in multiples of this many voxels
-constexpr std::int64_t longest_row = 16 * lanes;        // voxels in a row of weights
+constexpr std::int64_t lanes = 16;                            // rows come in multiples of this many voxels
+constexpr std::int64_t longest_row = 16 * lanes;              // voxels in a row of weights
 constexpr std::int64_t longest_column = longest_row + lanes;  // the same with what the neighbourhood needs beside it
-constexpr std::int64_t chunk = 7;                       // rows of weights summed in 16 bits: 7 x 8191 < 2^16
+constexpr std::int64_t chunk = 7;                             // rows of weights summed in 16 bits: 7 x 8191 < 2^16
 constexpr std::int32_t weight_of_one = 8191;
 
 /// How differences become weights, in integers.

@@ -37,8 +37,8 @@ AVX2_INLINE void add_columns(const PatchRow& r, std::int64_t k, __m256i cap, u16
     for (std::int64_t i = 0; i < length; i += lanes) {
         __m256i sum = at(column + i);
         if constexpr (slide) {
-            sum = _mm256_add_epi16(sum, _mm256_sub_epi16(square<exact>(a + i, b + i, cap),
-                                                         square<exact>(old_a + i, old_b + i, cap)));
+            sum = _mm256_add_epi16(
+                sum, _mm256_sub_epi16(square<exact>(a + i, b + i, cap), square<exact>(old_a + i, old_b + i, cap)));
             put(column + i, sum);
         }
         const __m256i change = _mm256_sub_epi16(_mm256_min_epu16(sum, cap), _mm256_min_epu16(at(old + i), cap));
@@ -54,24 +54,18 @@ AVX2_INLINE void weigh(const u16* capped, u16* weight, const PatchScale::Weights
 {
     const __m256i c0 = all(w.cubic[0]), c1 = all(w.cubic[1]), c2 = all(w.cubic[2]), c3 = all(w.cubic[3]);
     __m256i x[m], e[m];
-#define EACH(...)                \
+#define EACH(...) \
     _Pragma("GCC unroll 8") for (int j = 0; j < m; ++j) { __VA_ARGS__; }
     EACH(x[j] = at(capped + j * lanes))
     _Pragma("GCC unroll 16") for (int i = 1; i < n; ++i) EACH(x[j] = _mm256_add_epi16(x[j], at(capped + j * lanes + i)))
-    EACH(x[j] = _mm256_subs_epu16(x[j], all(w.free)))
-    EACH(x[j] = _mm256_min_epu16(x[j], all(w.most)))
-    EACH(x[j] = _mm256_mullo_epi16(x[j], all(w.stretch)))
-    EACH(e[j] = _mm256_mulhrs_epi16(x[j], c3))
-    EACH(e[j] = _mm256_add_epi16(e[j], c2))
-    EACH(e[j] = _mm256_mulhrs_epi16(x[j], e[j]))
-    EACH(e[j] = _mm256_add_epi16(e[j], c1))
-    EACH(e[j] = _mm256_mulhrs_epi16(x[j], e[j]))
-    EACH(e[j] = _mm256_add_epi16(e[j], c0))
-    EACH(e[j] = _mm256_slli_epi16(e[j], 2))
-    EACH(e[j] = _mm256_mulhrs_epi16(e[j], e[j]))
-    EACH(e[j] = _mm256_mulhrs_epi16(e[j], e[j]))
-    EACH(x[j] = _mm256_srai_epi16(e[j], 2))
-    EACH(put(weight + j * lanes, _mm256_mulhrs_epi16(e[j], x[j])))
+        EACH(x[j] = _mm256_subs_epu16(x[j], all(w.free))) EACH(x[j] = _mm256_min_epu16(x[j], all(w.most)))
+            EACH(x[j] = _mm256_mullo_epi16(x[j], all(w.stretch))) EACH(e[j] = _mm256_mulhrs_epi16(x[j], c3))
+                EACH(e[j] = _mm256_add_epi16(e[j], c2)) EACH(e[j] = _mm256_mulhrs_epi16(x[j], e[j]))
+                    EACH(e[j] = _mm256_add_epi16(e[j], c1)) EACH(e[j] = _mm256_mulhrs_epi16(x[j], e[j]))
+                        EACH(e[j] = _mm256_add_epi16(e[j], c0)) EACH(e[j] = _mm256_slli_epi16(e[j], 2))
+                            EACH(e[j] = _mm256_mulhrs_epi16(e[j], e[j])) EACH(e[j] = _mm256_mulhrs_epi16(e[j], e[j]))
+                                EACH(x[j] = _mm256_srai_epi16(e[j], 2))
+                                    EACH(put(weight + j * lanes, _mm256_mulhrs_epi16(e[j], x[j])))
 #undef EACH
 }
 
@@ -134,8 +128,8 @@ AVX2 void start_columns(const PatchRow& r, const PatchScale& scale)
         u16* column = r.column + k * r.column_stride;
         for (std::int64_t i = 0; i < r.length + lanes; i += lanes) {
             const i16 *a = r.p_new + i, *b = r.ps_new + k + i;
-            put(column + i, _mm256_add_epi16(at(column + i), scale.exact ? square<true>(a, b, cap)
-                                                                         : square<false>(a, b, cap)));
+            put(column + i,
+                _mm256_add_epi16(at(column + i), scale.exact ? square<true>(a, b, cap) : square<false>(a, b, cap)));
         }
     }
 }

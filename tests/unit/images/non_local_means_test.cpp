@@ -2,12 +2,15 @@
 
 #include "craze/core/parallel.hpp"
 #include "craze/core/random.hpp"
+#include "craze/images/patch_weights.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
+#include <vector>
 
 namespace craze::images {
 namespace {
@@ -141,6 +144,56 @@ TEST(NonLocalMeans, KeepsTheContrastOfAThinSheetAndRemovesTheNoise)
     matter /= n, sheet /= m;
     EXPECT_LT(std::sqrt(matter2 / n - matter * matter), 12.0 / 10);
     EXPECT_GT((matter - sheet) / 120, 0.95);
+}
+
+// The loops spelled out and the plain ones, on sums that wrap and levels at random.
+TEST(PatchWeights, AreTheSameBitsSpelledOutOrPlain)
+{
+    if (!spelled_out()) GTEST_SKIP() << "this machine has no AVX2";
+    for (const NonLocalMeans& filter : {NonLocalMeans{21, 5, true, 12, 7.2}, NonLocalMeans{21, 3, false, 1, 0.6},
+                                        NonLocalMeans{11, 11, true, 40, 60}, NonLocalMeans{9, 7, false, 0, 3}}) {
+        const PatchScale scale(filter);
+        Random random(7);
+        PatchRow r{};
+        r.length = 5 * lanes, r.count = filter.search, r.neighbourhood = filter.neighbourhood;
+        r.column_stride = r.length + lanes, r.weight_stride = r.length + 8;
+        std::vector<std::int16_t> levels(4 * 200), sums(200);
+        for (auto& v : levels) v = scale.scaled[random.bits() & 255U];
+        for (auto& v : sums) v = static_cast<std::int16_t>((random.bits() & 255U) << 7);
+        r.p_new = &levels[0], r.p_old = &levels[200], r.ps_new = &levels[400], r.ps_old = &levels[600];
+        struct State {
+            std::vector<std::uint16_t> column, old, band, weight;
+            std::vector<std::int32_t> weighted, weights;
+        } a;
+        for (auto* v : {&a.column, &a.old, &a.band})
+            for (std::int64_t i = 0; i < r.count * r.column_stride; ++i)
+                v->push_back(static_cast<std::uint16_t>(random.bits()));
+        a.weight.resize(static_cast<std::size_t>(r.count * r.weight_stride));
+        a.weighted.assign(static_cast<std::size_t>(r.length), 3), a.weights.assign(a.weighted.size(), 5);
+        State b = a;
+        const auto point = [&](State& s) {
+            r.column = s.column.data(), r.column_old = s.old.data(), r.band = s.band.data(), r.weight = s.weight.data();
+        };
+        const auto sum = [&](State& s) {
+            return std::pair{WeightedRows{s.weight.data(), sums.data() + 20, r.weight_stride, 1, r.count},
+                             Accumulators{s.weighted.data(), s.weights.data()}};
+        };
+        for (const bool columns_done : {true, false}) {
+            point(a);
+            avx2::start_columns(r, scale);
+            avx2::weigh_row(r, scale, columns_done, true);
+            avx2::add_rows(sum(a).first, sum(a).second, r.length);
+            point(b);
+            plain::start_columns(r, scale);
+            plain::weigh_row(r, scale, columns_done, true);
+            plain::add_rows(sum(b).first, sum(b).second, r.length);
+            EXPECT_EQ(a.column, b.column);
+            EXPECT_EQ(a.band, b.band);
+            EXPECT_EQ(a.weight, b.weight);
+            EXPECT_EQ(a.weighted, b.weighted);
+            EXPECT_EQ(a.weights, b.weights);
+        }
+    }
 }
 
 }  // namespace
