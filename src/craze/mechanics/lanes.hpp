@@ -13,6 +13,18 @@ namespace craze::mechanics {
 using Lanes = double __attribute__((vector_size(32)));
 using Pair = double __attribute__((vector_size(16)));
 inline constexpr int lanes = 4;
+/// Bonds ahead of the one at hand whose far ends are asked for: their rows lie anywhere, no hardware foresees them.
+inline constexpr int ahead = 32;
+/// What arrays of bonds are padded with, so that packs and foresight may read past the end.
+inline constexpr int bond_padding = ahead + lanes;
+
+/// Asks for a row of at most eight doubles, to read or to write.
+template <bool write>
+CRAZE_INLINE void prefetch_row(const double* p, int length)
+{
+    __builtin_prefetch(p, write);
+    __builtin_prefetch(p + length - 1, write);
+}
 
 CRAZE_INLINE Lanes load(const double* p)
 {

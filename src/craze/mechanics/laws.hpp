@@ -145,7 +145,10 @@ CRAZE_INLINE CorotationalBeam<Real> corotational_beam(const BeamSection& s, Real
     const Real inv_L = 1.0 / out.length;
     const Triple<Real> t = inv_L * d;
     out.t = t;
-    const Triple<Real> b_1 = turned(q_1, t_0), b_2 = turned(q_2, t_0);
+    const Triple<Real> b_1 = turned(q_1, t_0);
+    // q_2 t_0 = v + c_t, of which both the turned axis and the twist are made.
+    const Triple<Real> half_2 = cross(q_2.v, t_0), c_2 = half_2 + half_2;
+    const Triple<Real> b_2 = t_0 + q_2.w * c_2 + cross(q_2.v, c_2);
     const Real bend = 2.0 * s.EI * inv_L0;
 
     const Triple<Real> sum = b_1 + b_2;
@@ -154,12 +157,14 @@ CRAZE_INLINE CorotationalBeam<Real> corotational_beam(const BeamSection& s, Real
     const Real shear = 3.0 * bend * inv_L;
     out.loads.F_1 = (out.loads.N + shear * along) * t - shear * sum;
 
-    const Triple<Real> bending_1 = bend * cross(b_1, t + t + t - b_2), bending_2 = bend * cross(b_2, t + t + t - b_1);
+    // b_1 x (3 t - b_2) and b_2 x (3 t - b_1)
+    const Triple<Real> chord = (3.0 * bend) * t, between = bend * cross(b_1, b_2);
+    const Triple<Real> bending_1 = cross(b_1, chord) - between, bending_2 = cross(b_2, chord) + between;
     out.bending_1_2 = dot(bending_1, bending_1), out.bending_2_2 = dot(bending_2, bending_2);
     out.bending_energy = bend * (5.0 - 3.0 * along + dot(b_1, b_2));
 
     // The turn of end 2 in the frame of end 1, and its gradient with respect to the turn of end 2.
-    const Triple<Real> v = q_2.w * t_0 + cross(q_2.v, t_0);
+    const Triple<Real> v = q_2.w * t_0 + half_2;
     const Real c_t = dot(q_2.v, t_0);
     const Triple<Real> axis = c_t * q_1.v + q_1.w * v - cross(v, q_1.v);
     const Real half_phi = q_1.w * c_t - dot(q_1.v, v);

@@ -10,140 +10,119 @@ namespace craze::mechanics {
 namespace {
 
 using Pack = Triple<Lanes>;
+using Mask = decltype(Lanes{} < Lanes{});
 
-struct BondBlock {
-    Pack d;
-    Lanes inv_length, slack;
-};
+/// Where the kernel reads bonds: plain pointers, which stay in registers.
+struct BondArrays {
+    const std::int32_t *i, *j;
+    const double *dx, *dy, *dz, *inv_length, *slack;
 
-CRAZE_INLINE BondBlock load_block(const MovingBonds& bonds, std::int64_t b)
-{
-    return {{load(bonds.dx.data() + b), load(bonds.dy.data() + b), load(bonds.dz.data() + b)},
-            load(bonds.inv_length.data() + b),
-            load(bonds.slack.data() + b)};
-}
-
-/// What a bond of either kind does, lane by lane.
-struct BondResult {
-    BeamLoads<Lanes> loads;
-    Lanes bending_2;  ///< square of the larger end moment
-    Lanes bending_energy;
+    explicit BondArrays(const MovingBonds& b)
+        : i(b.i.data()),
+          j(b.j.data()),
+          dx(b.dx.data()),
+          dy(b.dy.data()),
+          dz(b.dz.data()),
+          inv_length(b.inv_length.data()),
+          slack(b.slack.data())
+    {
+    }
 };
 
 CRAZE_INLINE Lanes square(const Pack& a) { return dot(a, a); }
-
-template <Geometry geometry>
-CRAZE_INLINE BondResult bond_result(const BeamSection& s, const BondBlock& bond, const Seven& one, const Seven& two)
-{
-    const Pack du{two.a - one.a, two.b - one.b, two.c - one.c};
-    const Lanes zero{};
-    const auto is_beam = bond.slack < 0.0;
-    BondResult out;
-    Pack t;
-    if constexpr (geometry == Geometry::corotational) {
-        const auto beam = corotational_beam<Lanes>(s, bond.inv_length, bond.d, du, {{one.e, one.f, one.g}, one.h},
-                                                   {{two.e, two.f, two.g}, two.h});
-        out.loads = beam.loads;
-        out.bending_energy = beam.bending_energy;
-        out.bending_2 = beam.bending_1_2 > beam.bending_2_2 ? beam.bending_1_2 : beam.bending_2_2;
-        t = beam.t;
-    } else {
-        t = bond.inv_length * bond.d;
-        out.loads =
-            small_displacement_beam<Lanes>(s, bond.inv_length, t, du, {one.e, one.f, one.g}, {two.e, two.f, two.g});
-        const Pack across_1 = cross(t, out.loads.M_1), across_2 = cross(t, out.loads.M_2);
-        const Lanes m_1 = square(across_1), m_2 = square(across_2);
-        out.bending_2 = m_1 > m_2 ? m_1 : m_2;
-        out.bending_energy = (m_1 + m_2 - dot(across_1, across_2)) * (1.0 / (6.0 * s.EI));  // per inverse length
-    }
-    // A contact beam bears N alone, and only while it is closed: N is EA times the strain for both.
-    const Lanes gap = out.loads.N + s.EA * bond.slack;
-    const Lanes push = gap < 0.0 ? gap : zero;
-    out.loads.N = is_beam ? out.loads.N : push;
-    const auto choose = [&](Pack& a, const Pack& b) {
-        a.x = is_beam ? a.x : b.x, a.y = is_beam ? a.y : b.y, a.z = is_beam ? a.z : b.z;
-    };
-    choose(out.loads.F_1, push * t);
-    choose(out.loads.M_1, {zero, zero, zero});
-    choose(out.loads.M_2, {zero, zero, zero});
-    return out;
-}
-
-template <Geometry geometry>
-CRAZE_INLINE Lanes elastic_energy(const BeamSection& s, const BondBlock& bond, const BondResult& r)
-{
-    const Lanes normal = r.loads.N * r.loads.N * (0.5 / s.EA), twist = r.loads.T * r.loads.T * (0.5 / s.GJ);
-    const auto is_beam = bond.slack < 0.0;
-    if constexpr (geometry == Geometry::corotational)
-        return is_beam ? (normal + twist) / bond.inv_length + r.bending_energy : normal / bond.inv_length;
-    else
-        return (is_beam ? normal + twist + r.bending_energy : normal) / bond.inv_length;
-}
-
-CRAZE_INLINE Rows rows_1(const BeamLoads<Lanes>& l)
-{
-    return rows_of({l.F_1.x, l.F_1.y, l.F_1.z, l.M_1.x, l.M_1.y, l.M_1.z});
-}
-CRAZE_INLINE Rows rows_2(const BeamLoads<Lanes>& l)
-{
-    return rows_of({-l.F_1.x, -l.F_1.y, -l.F_1.z, l.M_2.x, l.M_2.y, l.M_2.z});
-}
+CRAZE_INLINE Lanes where(Mask yes, Lanes a) { return yes ? a : Lanes{}; }
+CRAZE_INLINE Pack where(Mask yes, const Pack& a) { return {where(yes, a.x), where(yes, a.y), where(yes, a.z)}; }
+CRAZE_INLINE bool any(Mask m) { return (m[0] | m[1] | m[2] | m[3]) != 0; }
 
 /// Eq. 24 without roots: sigma_R >= S where sigma S + tau^2 >= S^2. At or above zero the beam fails.
 struct FailureLaw {
-    double tau_per_T, inv_S, S, per_area, moment_per_sigma;
+    double tau_2_per_T_2, S, per_area, moment_per_sigma;
 
     FailureLaw(const BeamSection& s, double strength)
-        : tau_per_T(s.R_B / s.J_B),
-          inv_S(1.0 / strength),
+        : tau_2_per_T_2(s.R_B / s.J_B * (s.R_B / s.J_B) / strength),
           S(strength),
           per_area(1.0 / s.area),
           moment_per_sigma(s.I_B / s.R_B)
     {
     }
-    CRAZE_INLINE Lanes excess(const BondResult& r) const
+    /// @param bending_2  square of the larger end moment
+    CRAZE_INLINE Mask fails(Lanes N, Lanes T, Lanes bending_2) const
     {
-        const Lanes tau = r.loads.T * tau_per_T;
-        const Lanes room = S - tau * tau * inv_S - r.loads.N * per_area;  // left for bending
+        const Lanes room = S - tau_2_per_T_2 * (T * T) - N * per_area;  // left for bending
         const Lanes bending = room * moment_per_sigma;
-        const Lanes over = r.bending_2 - bending * bending;
-        return bending > 0.0 ? over : spread(1.0);
+        return (bending_2 >= bending * bending) | (bending <= 0.0);
     }
 };
 
 template <Geometry geometry>
-CRAZE_INLINE void add_bonds_of(const BeamSection& s, const MovingBonds& bonds, std::int64_t begin, std::int64_t end,
-                               const double* pose, double* force, BondPass& pass)
+CRAZE_INLINE void add_bonds_of(const BeamSection& section, const MovingBonds& bonds, std::int64_t begin,
+                               std::int64_t end, const double* pose, double* force, BondPass& pass)
 {
-    const bool can_break = std::isfinite(pass.strength);
+    const BeamSection s = section;
+    const BondArrays at(bonds);
+    const bool can_break = std::isfinite(pass.strength), measure = pass.measure;
     const FailureLaw failure(s, pass.strength);
     const std::int64_t low = pass.low, limit = pass.limit;
+    const double per_EA = 0.5 / s.EA, per_GJ = 0.5 / s.GJ, per_EI = 1.0 / (6.0 * s.EI);
     for (std::int64_t b = begin; b < end; b += lanes) {
-        const std::int32_t *i = bonds.i.data() + b, *j = bonds.j.data() + b;
-        const BondBlock bond = load_block(bonds, b);
+        const std::int32_t *i = at.i + b, *j = at.j + b;
+        for (int k = 0; k < lanes; ++k)
+            prefetch_row<false>(pose + 8 * j[ahead + k], 8), prefetch_row<true>(force + 6 * j[ahead + k], 6);
+        const Pack d_0{load(at.dx + b), load(at.dy + b), load(at.dz + b)};
+        const Lanes inv_length = load(at.inv_length + b), slack = load(at.slack + b);
+        const Mask is_beam = slack < 0.0;
         const Seven one = gather_seven(pose + 8 * i[0], pose + 8 * i[1], pose + 8 * i[2], pose + 8 * i[3]);
         const Seven two = gather_seven(pose + 8 * j[0], pose + 8 * j[1], pose + 8 * j[2], pose + 8 * j[3]);
-        const BondResult result = bond_result<geometry>(s, bond, one, two);
-        const Rows row_1 = rows_1(result.loads), row_2 = rows_2(result.loads);
-        const int count = static_cast<int>(std::min<std::int64_t>(lanes, end - b));
-        if (count == lanes && i[0] >= low && std::max(std::max(j[0], j[1]), std::max(j[2], j[3])) < limit) {
-            for (int k = 0; k < lanes; ++k) add_row(force + 6 * i[k], row_1, k), add_row(force + 6 * j[k], row_2, k);
+        const Pack du{two.a - one.a, two.b - one.b, two.c - one.c};
+
+        BeamLoads<Lanes> loads;
+        Pack t;
+        Lanes bending_2, bending_energy{};
+        if constexpr (geometry == Geometry::corotational) {
+            const auto beam = corotational_beam<Lanes>(s, inv_length, d_0, du, {{one.e, one.f, one.g}, one.h},
+                                                       {{two.e, two.f, two.g}, two.h});
+            loads = beam.loads, t = beam.t;
+            bending_2 = beam.bending_1_2 > beam.bending_2_2 ? beam.bending_1_2 : beam.bending_2_2;
+            if (measure) bending_energy = beam.bending_energy;
         } else {
-            for (int k = 0; k < count; ++k) {
-                if (i[k] >= low) add_row(force + 6 * i[k], row_1, k);
-                if (j[k] < limit) add_row(force + 6 * j[k], row_2, k);
-            }
+            t = inv_length * d_0;
+            loads = small_displacement_beam<Lanes>(s, inv_length, t, du, {one.e, one.f, one.g}, {two.e, two.f, two.g});
+            const Pack across_1 = cross(t, loads.M_1), across_2 = cross(t, loads.M_2);
+            const Lanes m_1 = square(across_1), m_2 = square(across_2);
+            bending_2 = m_1 > m_2 ? m_1 : m_2;
+            if (measure) bending_energy = (m_1 + m_2 - dot(across_1, across_2)) * per_EI / inv_length;
         }
         if (can_break) {
-            const Lanes excess = failure.excess(result);
-            const auto fails = (excess >= 0.0) & (bond.slack < 0.0);
-            if (fails[0] | fails[1] | fails[2] | fails[3])
-                for (int k = 0; k < count; ++k)
+            const Mask fails = failure.fails(loads.N, loads.T, bending_2) & is_beam;
+            if (any(fails)) [[unlikely]]
+                for (int k = 0; k < lanes && b + k < end; ++k)
                     if (fails[k]) pass.broken.push_back(static_cast<std::int32_t>(b + k));
         }
-        if (pass.measure) {
-            const Lanes energy = elastic_energy<geometry>(s, bond, result);
+        if (any(~is_beam)) [[unlikely]] {
+            // A contact beam bears N alone, and only while it is closed: N is EA times the strain for both.
+            const Lanes gap = loads.N + s.EA * slack;
+            const Lanes push = gap < 0.0 ? gap : Lanes{};
+            const Pack pushed = where(~is_beam, push * t);
+            loads.F_1 = where(is_beam, loads.F_1) + pushed;
+            loads.M_1 = where(is_beam, loads.M_1), loads.M_2 = where(is_beam, loads.M_2);
+            loads.N = is_beam ? loads.N : push;
+            loads.T = where(is_beam, loads.T), bending_energy = where(is_beam, bending_energy);
+        }
+        const int count = static_cast<int>(std::min<std::int64_t>(lanes, end - b));
+        if (measure) {
+            const Lanes energy =
+                (loads.N * loads.N * per_EA + loads.T * loads.T * per_GJ) / inv_length + bending_energy;
             for (int k = 0; k < count; ++k) pass.energy += energy[k];
+        }
+        const Rows row_1 = rows_of({loads.F_1.x, loads.F_1.y, loads.F_1.z, loads.M_1.x, loads.M_1.y, loads.M_1.z});
+        const Rows row_2 = rows_of({-loads.F_1.x, -loads.F_1.y, -loads.F_1.z, loads.M_2.x, loads.M_2.y, loads.M_2.z});
+        if (count == lanes && i[0] >= low && std::max(std::max(j[0], j[1]), std::max(j[2], j[3])) < limit) [[likely]] {
+            for (int k = 0; k < lanes; ++k) add_row(force + 6 * i[k], row_1, k), add_row(force + 6 * j[k], row_2, k);
+            continue;
+        }
+        for (int k = 0; k < count; ++k) {
+            if (i[k] >= low) add_row(force + 6 * i[k], row_1, k);
+            if (j[k] < limit) add_row(force + 6 * j[k], row_2, k);
         }
     }
 }
@@ -164,7 +143,7 @@ MovingBonds moving_bonds(const Lattice& lattice, std::span<const domain::BondKin
 {
     MovingBonds out;
     out.count = lattice.bonds();
-    const auto padded = static_cast<std::size_t>(out.count) + lanes;
+    const auto padded = static_cast<std::size_t>(out.count) + bond_padding;
     out.i = lattice.i, out.j = lattice.j;
     out.i.resize(padded), out.j.resize(padded);
     for (auto* values : {&out.dx, &out.dy, &out.dz, &out.inv_length}) values->assign(padded, 1.0);
@@ -183,7 +162,7 @@ MovingBonds selected(const MovingBonds& bonds, std::span<const std::int32_t> lis
     MovingBonds out;
     out.count = std::ssize(list);
     const auto pick = [&](auto& to, const auto& from, auto pad) {
-        to.assign(list.size() + lanes, pad);
+        to.assign(list.size() + bond_padding, pad);
         for (std::size_t k = 0; k < list.size(); ++k) to[k] = from[static_cast<std::size_t>(list[k])];
     };
     pick(out.i, bonds.i, 0), pick(out.j, bonds.j, 0);
@@ -207,7 +186,7 @@ BondEnergy bond_energy(const BeamSection& section, const MovingBonds& bonds, std
     const auto k = static_cast<std::size_t>(b);
     MovingBonds one;
     one.count = 1;
-    one.i.assign(lanes, 0), one.j.assign(lanes, 1);
+    one.i.assign(bond_padding, 0), one.j.assign(bond_padding, 1);
     one.dx.assign(lanes, bonds.dx[k]), one.dy.assign(lanes, bonds.dy[k]), one.dz.assign(lanes, bonds.dz[k]);
     one.inv_length.assign(lanes, bonds.inv_length[k]);
     std::vector<double> ends(16), force(12);

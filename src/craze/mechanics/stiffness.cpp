@@ -24,8 +24,8 @@ void Beams::resize(std::size_t n)
 {
     count = static_cast<std::int64_t>(n);
     // A pack may read past the last beam: harmless ones lie there.
-    i.assign(n + lanes, 0), j.assign(n + lanes, 0);
-    for (auto* values : {&tx, &ty, &tz, &inv_length}) values->assign(n + lanes, 0.0);
+    i.assign(n + bond_padding, 0), j.assign(n + bond_padding, 0);
+    for (auto* values : {&tx, &ty, &tz, &inv_length}) values->assign(n + bond_padding, 0.0);
 }
 
 namespace {
@@ -37,6 +37,8 @@ CRAZE_MULTIVERSION void add_beams(const BeamSection& s, const Beams& beams, std:
 {
     for (std::int64_t b = begin; b < end; b += lanes) {
         const std::int32_t *i = beams.i.data() + b, *j = beams.j.data() + b;
+        for (int k = 0; k < lanes; ++k)
+            prefetch_row<false>(u + 6 * j[ahead + k], 6), prefetch_row<true>(f + 6 * j[ahead + k], 6);
         const Triple<Lanes> t{load(beams.tx.data() + b), load(beams.ty.data() + b), load(beams.tz.data() + b)};
         const Six one = gather_six(u + 6 * i[0], u + 6 * i[1], u + 6 * i[2], u + 6 * i[3]);
         const Six two = gather_six(u + 6 * j[0], u + 6 * j[1], u + 6 * j[2], u + 6 * j[3]);
