@@ -1,5 +1,6 @@
 #include "craze/domain/cracks.hpp"
 
+#include "craze/core/index.hpp"
 #include "craze/core/parallel.hpp"
 #include "craze/domain/orientation.hpp"
 #include "craze/domain/voxel_walk.hpp"
@@ -13,8 +14,6 @@
 namespace craze::domain {
 
 namespace {
-
-std::size_t at(std::int64_t k) { return static_cast<std::size_t>(k); }
 
 struct Bounds {
     Vec3 least, most;

@@ -1,6 +1,7 @@
 #include "craze/domain/discretisation.hpp"
 
 #include "craze/core/errors.hpp"
+#include "craze/core/index.hpp"
 #include "craze/core/progress.hpp"
 
 #include <fmt/format.h>
@@ -12,8 +13,6 @@
 namespace craze::domain {
 
 namespace {
-
-std::size_t at(std::int32_t k) { return static_cast<std::size_t>(k); }
 
 void check(const Discretisation& d, const Defects& defects)
 {

@@ -1,6 +1,7 @@
 #include "craze/domain/draft.hpp"
 
 #include "craze/core/errors.hpp"
+#include "craze/core/index.hpp"
 #include "craze/domain/cells.hpp"
 #include "craze/domain/validity.hpp"
 
@@ -16,8 +17,6 @@
 namespace craze::domain {
 
 namespace {
-
-std::size_t at(std::int64_t k) { return static_cast<std::size_t>(k); }
 
 std::vector<double> numbers_after(std::string_view text, std::string_view key)
 {

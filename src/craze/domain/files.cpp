@@ -1,6 +1,7 @@
 #include "craze/domain/files.hpp"
 
 #include "craze/core/errors.hpp"
+#include "craze/core/index.hpp"
 #include "craze/core/units.hpp"
 #include "craze/domain/draft.hpp"
 #include "craze/domain/vtkhdf.hpp"
@@ -16,8 +17,6 @@ namespace craze::domain {
 namespace fs = std::filesystem;
 
 namespace {
-
-std::size_t at(std::int32_t k) { return static_cast<std::size_t>(k); }
 
 using Text = fmt::memory_buffer;
 template <class... Values>

@@ -1,6 +1,7 @@
 #include "craze/domain/pairs.hpp"
 
 #include "craze/core/errors.hpp"
+#include "craze/core/index.hpp"
 #include "craze/core/parallel.hpp"
 #include "craze/domain/cells.hpp"
 
@@ -14,8 +15,6 @@
 namespace craze::domain {
 
 namespace {
-
-std::size_t at(std::int64_t k) { return static_cast<std::size_t>(k); }
 
 /// Cells c-1, c, c+1, wrapped in a periodic box, none twice.
 std::vector<std::int32_t> around(std::int32_t c, std::int32_t n, bool periodic)

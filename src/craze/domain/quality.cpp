@@ -1,5 +1,6 @@
 #include "craze/domain/quality.hpp"
 
+#include "craze/core/index.hpp"
 #include "craze/core/json.hpp"
 #include "craze/domain/pairs.hpp"
 
@@ -11,8 +12,6 @@
 namespace craze::domain {
 
 namespace {
-
-std::size_t at(std::int32_t k) { return static_cast<std::size_t>(k); }
 
 double sphere_volume(double r) { return 4.0 / 3.0 * std::numbers::pi * r * r * r; }
 

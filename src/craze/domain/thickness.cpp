@@ -1,5 +1,6 @@
 #include "craze/domain/thickness.hpp"
 
+#include "craze/core/index.hpp"
 #include "craze/core/parallel.hpp"
 #include "craze/domain/voxel_walk.hpp"
 
@@ -9,8 +10,6 @@
 namespace craze::domain {
 
 namespace {
-
-std::size_t at(std::int64_t k) { return static_cast<std::size_t>(k); }
 
 struct Counter {
     const microstructure::Microstructure& micro;

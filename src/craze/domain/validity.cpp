@@ -1,6 +1,7 @@
 #include "craze/domain/validity.hpp"
 
 #include "craze/core/errors.hpp"
+#include "craze/core/index.hpp"
 #include "craze/domain/pairs.hpp"
 
 #include <fmt/format.h>
@@ -14,8 +15,6 @@ namespace craze::domain {
 std::string name_of(Part part) { return part == Part::element ? "element" : part == Part::bond ? "bond" : "near pair"; }
 
 namespace {
-
-std::size_t at(std::int32_t k) { return static_cast<std::size_t>(k); }
 
 void check_elements(const Domain& d, const Origin& origin)
 {

@@ -1,5 +1,6 @@
 // MetaImage: "Key = Value" lines, the last of them ElementDataFile; lengths in millimetres.
 
+#include "craze/io/text_lines.hpp"
 #include "craze/io/volume_formats.hpp"
 
 #include <fmt/format.h>
@@ -26,12 +27,6 @@ struct Header {
     std::int64_t length = 0;  // of the text up to the end of the last line
 };
 
-std::string trimmed(const std::string& text)
-{
-    const auto first = text.find_first_not_of(" \t\r"), last = text.find_last_not_of(" \t\r");
-    return first == std::string::npos ? "" : text.substr(first, last - first + 1);
-}
-
 template <class Number>
 std::vector<Number> numbers(const fs::path& file, const std::string& key, const std::string& value)
 {
@@ -44,7 +39,7 @@ std::vector<Number> numbers(const fs::path& file, const std::string& key, const 
 
 bool is_true(const std::string& value) { return value == "True" || value == "true" || value == "1"; }
 
-Sample sample_named(const fs::path& file, const std::string& type)
+Sample sample_of_element_type(const fs::path& file, const std::string& type)
 {
     if (type == "MET_UCHAR") return Sample::u8;
     if (type == "MET_USHORT") return Sample::u16;
@@ -74,7 +69,7 @@ Header read_header(const fs::path& file)
         else if (key == "DimSize")
             size = numbers<std::int64_t>(file, key, value);
         else if (key == "ElementType")
-            sample = sample_named(file, value);
+            sample = sample_of_element_type(file, value);
         else if (key == "ElementSpacing" || (key == "ElementSize" && spacing.empty()))
             spacing = numbers<double>(file, key, value);
         else if (key == "ElementByteOrderMSB" || key == "BinaryDataByteOrderMSB")

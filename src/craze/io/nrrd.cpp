@@ -1,5 +1,6 @@
 // NRRD with raw encoding, its values in the same file or beside it.
 
+#include "craze/io/text_lines.hpp"
 #include "craze/io/volume_formats.hpp"
 
 #include <fmt/format.h>
@@ -18,12 +19,6 @@ namespace fs = std::filesystem;
 namespace {
 
 using Fields = std::map<std::string, std::string>;
-
-std::string trimmed(const std::string& text)
-{
-    const auto first = text.find_first_not_of(" \t\r"), last = text.find_last_not_of(" \t\r");
-    return first == std::string::npos ? "" : text.substr(first, last - first + 1);
-}
 
 // The fields up to the blank line (or the end of a detached header), and where that line ends.
 Fields read_fields(const fs::path& file, std::int64_t& length)
@@ -45,7 +40,7 @@ Fields read_fields(const fs::path& file, std::int64_t& length)
     return fields;
 }
 
-Sample sample_named(const fs::path& file, const std::string& type)
+Sample sample_of_type(const fs::path& file, const std::string& type)
 {
     for (const char* name : {"uchar", "unsigned char", "uint8", "uint8_t"})
         if (type == name) return Sample::u8;
@@ -106,7 +101,7 @@ ReaderPtr open_nrrd(const fs::path& file)
         return found->second;
     };
     VolumeInfo info;
-    info.sample = sample_named(file, need("type"));
+    info.sample = sample_of_type(file, need("type"));
     if (need("dimension") != "3") refuse(file, fmt::format("needed dimension 3, got {}", need("dimension")));
     std::istringstream sizes(need("sizes"));
     if (!(sizes >> info.shape.nx >> info.shape.ny >> info.shape.nz))

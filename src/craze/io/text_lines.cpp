@@ -32,6 +32,12 @@ std::string read_text_gz(const fs::path& file)
     }
 }
 
+std::string trimmed(const std::string& text)
+{
+    const auto first = text.find_first_not_of(" \t\r"), last = text.find_last_not_of(" \t\r");
+    return first == std::string::npos ? "" : text.substr(first, last - first + 1);
+}
+
 TextLines::TextLines(fs::path file, std::string_view separators)
     : file_(std::move(file)), text_(read_text_gz(file_)), separators_(" \t\r" + std::string(separators))
 {

@@ -14,6 +14,9 @@ namespace craze::io {
 /// @throws InvalidInput  when it cannot be read or is damaged
 std::string read_text_gz(const std::filesystem::path& file);
 
+/// The text without blanks, tabs and carriage returns at its ends.
+std::string trimmed(const std::string& text);
+
 /// Walks over the lines of a text and the words of each.
 class TextLines {
 public:

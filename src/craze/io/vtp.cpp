@@ -7,7 +7,7 @@ namespace craze::io {
 namespace {
 
 // Data blocks of the file's end: each is its length in bytes, then the bytes.
-struct Appended {
+struct AppendedArrays {
     std::string xml;
     std::uint64_t offset = 0;
 
@@ -28,7 +28,7 @@ std::uint64_t bytes_of(const TriangleField& field)
 
 std::string head_of(const TriangleView& mesh)
 {
-    Appended data;
+    AppendedArrays data;
     const std::uint64_t points = mesh.vertices.size(), cells = mesh.triangles.size();
     data.xml = fmt::format(
         "<?xml version=\"1.0\"?>\n"

@@ -97,22 +97,30 @@ float sheetness(float xx, float yy, float zz, float xy, float xz, float yz)
     return largest - std::max(std::abs(middle), std::abs(least));
 }
 
+// Second differences need a neighbour on either side: the voxels of a face take those of the voxel before it, so that a
+// slope that ends at the face is not taken for a valley.
+std::int64_t with_neighbours(std::int64_t i, std::int64_t n)
+{
+    return n < 3 ? i : std::clamp<std::int64_t>(i, 1, n - 2);
+}
+
 // One slice of responses from three smoothed slices.
 void respond(const float* below, const float* at, const float* above, std::int64_t nx, std::int64_t ny, float scale2,
              float* to)
 {
     for (std::int64_t y = 0; y < ny; ++y) {
-        const std::int64_t up = inside(y - 1, ny) * nx, here = y * nx, down = inside(y + 1, ny) * nx;
+        const std::int64_t row = with_neighbours(y, ny), here = row * nx;
+        const std::int64_t up = inside(row - 1, ny) * nx, down = inside(row + 1, ny) * nx;
         for (std::int64_t x = 0; x < nx; ++x) {
-            const std::int64_t l = inside(x - 1, nx), r = inside(x + 1, nx);
-            const float twice = 2 * at[here + x];
-            const float xx = at[here + l] + at[here + r] - twice, yy = at[up + x] + at[down + x] - twice,
-                        zz = below[here + x] + above[here + x] - twice;
+            const std::int64_t c = with_neighbours(x, nx), l = inside(c - 1, nx), r = inside(c + 1, nx);
+            const float twice = 2 * at[here + c];
+            const float xx = at[here + l] + at[here + r] - twice, yy = at[up + c] + at[down + c] - twice,
+                        zz = below[here + c] + above[here + c] - twice;
             if (!(xx + yy + zz > 0)) continue;
             const float xy = 0.25F * (at[down + r] + at[up + l] - at[down + l] - at[up + r]);
             const float xz = 0.25F * (above[here + r] + below[here + l] - above[here + l] - below[here + r]);
-            const float yz = 0.25F * (above[down + x] + below[up + x] - above[up + x] - below[down + x]);
-            to[here + x] = std::max(to[here + x], scale2 * sheetness(xx, yy, zz, xy, xz, yz));
+            const float yz = 0.25F * (above[down + c] + below[up + c] - above[up + c] - below[down + c]);
+            to[y * nx + x] = std::max(to[y * nx + x], scale2 * sheetness(xx, yy, zz, xy, xz, yz));
         }
     }
 }
@@ -124,20 +132,24 @@ void respond_slab(const Volume<std::uint8_t>& gray, double sigma, std::int64_t z
     const auto weight = gaussian(sigma);
     const auto reach = static_cast<std::int64_t>(weight.size()) - 1;
     const std::int64_t area = s.nx * s.ny;
-    std::vector<float> smooth(static_cast<std::size_t>((z1 - z0 + 2) * area)), raw(static_cast<std::size_t>(area)),
+    const std::int64_t first = std::max<std::int64_t>(0, std::min(z0 - 1, s.nz - 3)),
+                       last = std::min(s.nz - 1, std::max<std::int64_t>(z1, 2));
+    std::vector<float> smooth(static_cast<std::size_t>((last - first + 1) * area)), raw(static_cast<std::size_t>(area)),
         padded(static_cast<std::size_t>(s.nx + 2 * reach));
     std::vector<const std::uint8_t*> slices(static_cast<std::size_t>(2 * reach) + 1);
-    for (std::int64_t z = z0 - 1; z <= z1; ++z) {
+    for (std::int64_t z = first; z <= last; ++z) {
         for (std::int64_t k = -reach; k <= reach; ++k)
-            slices[static_cast<std::size_t>(k + reach)] = gray.slice(inside(inside(z, s.nz) + k, s.nz)).data();
+            slices[static_cast<std::size_t>(k + reach)] = gray.slice(inside(z + k, s.nz)).data();
         along_z(slices.data(), weight, raw.data(), area);
-        float* to = smooth.data() + (z - z0 + 1) * area;
+        float* to = smooth.data() + (z - first) * area;
         along_y(raw.data(), weight, to, s.nx, s.ny);
         for (std::int64_t y = 0; y < s.ny; ++y) along_x(to + y * s.nx, weight, padded.data(), s.nx);
     }
     for (std::int64_t z = z0; z < z1; ++z) {
-        const float* at = smooth.data() + (z - z0 + 1) * area;
-        respond(at - area, at, at + area, s.nx, s.ny, static_cast<float>(sigma * sigma), out.slice(z).data());
+        const std::int64_t c = with_neighbours(z, s.nz);
+        const auto smoothed = [&](std::int64_t i) { return smooth.data() + (inside(i, s.nz) - first) * area; };
+        respond(smoothed(c - 1), smoothed(c), smoothed(c + 1), s.nx, s.ny, static_cast<float>(sigma * sigma),
+                out.slice(z).data());
     }
 }
 

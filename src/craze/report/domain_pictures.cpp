@@ -15,7 +15,6 @@ namespace craze::report {
 
 namespace {
 
-constexpr double nano = 1e-9;
 constexpr const char* matter_colour = "#b9c0ca";
 constexpr const char* cracked_colour = "#e8a070";
 

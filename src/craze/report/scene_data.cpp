@@ -82,9 +82,9 @@ Json lines_part(const std::string& name, const std::string& colour, std::span<co
 
 Json scene_json(const Vec3& box, std::vector<Json> parts, const std::string& shade_title, double least, double most)
 {
-    constexpr double micro = 1e6;
-    Json out{{"box", {box.x * micro, box.y * micro, box.z * micro}},
-             {"extent", std::max({box.x, box.y, box.z}) * micro},
+    constexpr double micrometres = 1e6;
+    Json out{{"box", {box.x * micrometres, box.y * micrometres, box.z * micrometres}},
+             {"extent", std::max({box.x, box.y, box.z}) * micrometres},
              {"unit", "µm"},
              {"parts", std::move(parts)}};
     if (!shade_title.empty()) out["shade"] = {{"title", shade_title}, {"least", least}, {"most", most}};

@@ -15,8 +15,6 @@ namespace craze::report {
 
 namespace {
 
-constexpr double giga = 1e9, mega = 1e6, percent = 0.01;
-
 using loading::Point;
 using Kind = loading::Loading::Kind;
 

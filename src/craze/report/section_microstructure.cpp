@@ -14,8 +14,6 @@ namespace craze::report {
 
 namespace {
 
-constexpr double micro = 1e-6, nano = 1e-9, percent = 0.01;
-
 void gray_histogram(Work& work, const Json& summary)
 {
     const auto csv = work.folder.csv("microstructure", "histogram.csv");

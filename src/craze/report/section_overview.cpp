@@ -1,17 +1,17 @@
 // The numbers first: what was given, measured, fitted, predicted; truth and the paper's numbers beside.
 
 #include "craze/core/json.hpp"
+#include "craze/report/html.hpp"
 #include "craze/report/sections.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace craze::report {
 
 namespace {
-
-constexpr double giga = 1e9, percent = 0.01, micro = 1e-6, nano = 1e-9;
 
 enum class Origin { measured, given, fitted, predicted };
 
@@ -80,6 +80,15 @@ void loading_rows(Headline& table, const Json& loading)
         table.row(label('y'), number(key + "y"), giga, Origin::predicted, none, p.y);
         table.row(label('z'), number(key + "z"), giga, Origin::predicted, none, p.z);
     }
+    // Specimens of the reader's own ("both T1", "cracks 40 nm"): the paper has no number for them.
+    const Json& moduli = find(loading, "moduli");
+    for (const auto& [specimen, values] : moduli.items()) {
+        if (specimen == "dense" || std::ranges::any_of(paper, [&](const Paper& p) { return p.specimen == specimen; }))
+            continue;
+        for (const char axis : {'x', 'y', 'z'})
+            table.row(fmt::format("E<sub>{}</sub>, {} [GPa]", axis, escape(specimen)),
+                      find_number(values, {fmt::format("tension_Pa.{}", axis)}), giga, Origin::predicted);
+    }
     for (const std::string specimen : {"pores", "cracks", "both"}) {
         const double ratio = specimen == "pores" ? 0.75 : specimen == "cracks" ? 0.46 : 0.29;
         table.row(fmt::format("K(0)/K<sub>D</sub>, {}", specimen == "both" ? "pores and cracks" : specimen + " only"),
@@ -122,6 +131,8 @@ void write_overview(Work& work)
     table.row("bonds", discrete({"bonds"}), 1.0, Origin::measured, none, 278000, 9);
     table.row("contact beams (cut bonds)", discrete({"specimen.contact_beams", "contact_beams"}), 1.0, Origin::measured,
               none, none, 9);
+    table.row("crack thickness T<sub>1</sub>, median [nm]", discrete({"T1_m.median"}), nano, Origin::measured, none,
+              none, 3);
     table.row("crack thickness T<sub>2</sub>, median [nm]", discrete({"T2_m.median"}), nano, Origin::measured, none, 37,
               3);
     loading_rows(table, folder.summary("loading"));

@@ -13,6 +13,9 @@
 
 namespace craze::report {
 
+/// Units that pages print values in: value / nano is in nanometres.
+inline constexpr double giga = 1e9, mega = 1e6, percent = 1e-2, micro = 1e-6, nano = 1e-9;
+
 /// All that a section reads from and writes to.
 struct Work {
     const OutputFolder& folder;

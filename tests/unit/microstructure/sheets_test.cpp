@@ -13,6 +13,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numbers>
 
 namespace craze::microstructure {
 namespace {
@@ -59,6 +60,8 @@ double twin(const Volume<std::uint8_t>& gray, double sigma, std::int64_t x, std:
     const Shape& s = gray.shape();
     const auto reach = static_cast<std::int64_t>(std::ceil(4 * sigma));
     const auto in = [](std::int64_t i, std::int64_t n) { return std::clamp<std::int64_t>(i, 0, n - 1); };
+    x = std::clamp<std::int64_t>(x, 1, s.nx - 2), y = std::clamp<std::int64_t>(y, 1, s.ny - 2),
+    z = std::clamp<std::int64_t>(z, 1, s.nz - 2);
     const auto smooth = [&](std::int64_t a, std::int64_t b, std::int64_t c) {
         a = in(a, s.nx), b = in(b, s.ny), c = in(c, s.nz);
         double sum = 0, weights = 0;
@@ -112,6 +115,16 @@ TEST(SheetResponse, OfAThinSheetIsWhatTheoryGivesInAnyOrientation)
         });
         EXPECT_NEAR(static_cast<double>(sheet_response(gray, {3.0})(24, 24, 24)), 7.98, 0.6);
     }
+}
+
+TEST(SheetResponse, TakesNoSlopeForASheetNotEvenAtTheFaces)
+{
+    // One gray level per voxel ends at a face like half a valley; what is left there is the kink of the continued
+    // levels.
+    const auto gray = drawn({40, 30, 50}, [](double x, double y, double z) { return 230 - x - y - z; });
+    const double kink = 2.0 / std::sqrt(2 * std::numbers::pi);  // sigma^2 times the second derivative of one kink
+    const auto response = sheet_response(gray, {2.0});
+    for (const float r : response.values()) EXPECT_LT(static_cast<double>(r), 1.1 * kink);
 }
 
 TEST(SheetResponse, IgnoresBallsRodsAndBrightSheets)
