@@ -3,6 +3,7 @@
 #include "craze/core/errors.hpp"
 #include "craze/core/parallel.hpp"
 #include "craze/core/progress.hpp"
+#include "craze/core/units.hpp"
 #include "craze/core/version.hpp"
 #include "craze/io/atomic_file.hpp"
 #include "craze/pipeline/pipeline.hpp"
@@ -13,6 +14,7 @@
 
 #include <unistd.h>
 
+#include <cctype>
 #include <cstdlib>
 #include <exception>
 #include <functional>
@@ -88,6 +90,59 @@ struct Recipe {
     }
 };
 
+// A packing made elsewhere, named on the command line; each option stands for a key of [domain.import].
+struct Import {
+    std::vector<std::string> files, box;
+    std::string near, unit, format;
+    CLI::Option* option = nullptr;
+
+    void add_to(CLI::App& verb)
+    {
+        option = verb.add_option("--import", files,
+                                 "a packing made elsewhere, ELEMENTS [BONDS], taken through loading and report as it "
+                                 "is: no images; SETTINGS may be left out")
+                     ->expected(1, 2);
+        const auto with_import = [&](CLI::Option* other) { other->needs(option); };
+        with_import(verb.add_option("--box", box, "its three edges, such as \"17.61 um\"; plain numbers count --unit")
+                        ->expected(3));
+        with_import(verb.add_option("--unit", unit, "what one of the files' lengths is, such as um; m when left out"));
+        with_import(verb.add_option("--near", near, "file of i, j, T of its unbonded near pairs"));
+        with_import(verb.add_option("--format", format, "csv, lammps, yade, listing or vtkhdf; told from the files"));
+    }
+
+    bool wanted() const { return option->count() > 0; }
+
+    /// The settings that say the same.
+    std::vector<std::string> overrides() const
+    {
+        const auto quoted = [](const std::string& text) {
+            std::string out = "\"";
+            for (const char c : text) out += c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c};
+            return out + '"';
+        };
+        const std::string one = unit.empty()                                        ? "1 m"
+                                : std::isalpha(static_cast<unsigned char>(unit[0])) ? "1 " + unit
+                                                                                    : unit;
+        std::vector<std::string> set{"domain.import.alone=true", "domain.import.elements=" + quoted(files.front()),
+                                     "domain.import.unit=" + quoted(one)};
+        if (files.size() > 1) set.push_back("domain.import.bonds=" + quoted(files[1]));
+        if (!near.empty()) set.push_back("domain.import.near=" + quoted(near));
+        if (!format.empty()) set.push_back("domain.import.format=" + quoted(format));
+        if (!box.empty()) {
+            const double metres = parse_quantity(one, Dimension::length);
+            std::string edges;
+            for (const std::string& edge : box) {
+                const bool plain = edge.find_first_not_of("0123456789.eE+-") == std::string::npos;
+                const double length =
+                    plain ? metres * parse_quantity(edge, Dimension::pure) : parse_quantity(edge, Dimension::length);
+                edges += fmt::format("{}\"{} m\"", edges.empty() ? "" : ", ", length);
+            }
+            set.push_back("domain.import.box=[" + edges + "]");
+        }
+        return set;
+    }
+};
+
 int run(int argc, char** argv)
 {
     CLI::App app(
@@ -108,48 +163,32 @@ int run(int argc, char** argv)
         };
     });
 
+    Import import;
     for (const auto& [name, question] : pipeline::rooms()) {
         auto* verb = app.add_subcommand(name, fmt::format("only this room: {}", question));
         common.add_to(*verb);
         if (name == "microstructure")
             verb->add_flag("--sweep", sweep, "also try many R_C and R_E, and propose some (table and pictures)");
+        if (name == "domain") {
+            import.add_to(*verb);
+            verb->get_option("SETTINGS")->required(false);
+        }
         verb->callback([&, name = name] {
             work = [&, name] {
+                if (name == "domain" && import.wanted()) {
+                    const auto set = import.overrides();
+                    common.set.insert(common.set.begin(), set.begin(), set.end());
+                    if (common.out.empty()) common.out = fs::path("out") / fs::path(import.files.front()).stem();
+                    fmt::print("{}",
+                               pipeline::run(common.read(), {common.settings, common.folder(), common.set, resume}));
+                    return;
+                }
+                if (common.settings.empty())
+                    throw InvalidInput("SETTINGS is required, or a packing: --import ELEMENTS [BONDS]");
                 pipeline::run_room(name, common.read(), {common.settings, common.folder(), common.set, false, sweep});
             };
         });
     }
-
-    Recipe recipe;
-    std::string size;
-    auto* reproduce_verb =
-        app.add_subcommand("reproduce", "the paper's numbers beside ours, on coatings of known truth");
-    recipe.add_to(*reproduce_verb);
-    reproduce_verb->add_option("--size", size, "small: a cube of 8 um; paper: the paper's box, 92 000 elements")
-        ->check(CLI::IsMember({"small", "paper"}));
-    reproduce_verb->add_flag("--resume", resume, "go on from what an earlier run with the same recipe has finished");
-    reproduce_verb->callback([&] {
-        work = [&] {
-            auto s = recipe.read();
-            if (!size.empty()) s.reproduce.size = size == "paper" ? reproduce::Size::paper : reproduce::Size::small;
-            const fs::path out = recipe.out.empty() ? fs::path("out/reproduce") : fs::path(recipe.out);
-            fmt::print("{}", reproduce::page(reproduce::reproduce(s.synth, s.reproduce, {out, resume})));
-        };
-    });
-    auto* fit_verb = app.add_subcommand(
-        "fit-coating",
-        "search the cracks of a recipe for the paper's numbers; says what was fitted and what hangs on what");
-    recipe.add_to(*fit_verb);
-    fit_verb->add_flag("--resume", resume, "take candidates that an earlier run with the same settings has tried");
-    fit_verb->callback([&] {
-        work = [&] {
-            const auto s = recipe.read();
-            const fs::path out = recipe.out.empty() ? fs::path("out/fit-coating") : fs::path(recipe.out);
-            const auto fit = reproduce::fit_coating(s.synth, s.fit, {out, resume});
-            reproduce::save(fit, out);
-            fmt::print("{}", reproduce::page(fit));
-        };
-    });
 
     std::string file;
     bool force = false;

@@ -53,6 +53,7 @@ struct Settings {
         std::string format = "auto";
         double unit = 1.0;        ///< m: one of the file's lengths
         std::vector<double> box;  ///< three edges, m; empty: as the file says, else around the elements
+        bool alone = false;       ///< loaded as it is, without images
     } import_from;
     std::vector<std::string> write;  ///< formats to write the cracked, porous domain in
 };

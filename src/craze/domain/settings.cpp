@@ -38,6 +38,8 @@ void describe(Schema& schema, Settings& s)
         schema.quantity("unit", from.unit, Dimension::length, {1e-12, 1e3}, "what one of the file's lengths is");
         schema.quantities("box", from.box, Dimension::length, {1e-10, 1e3},
                           "three edges; empty: the stack's, else the file's, else around the elements");
+        schema.flag("alone", from.alone,
+                    "load the packing as it is, without images: only domain, loading and report run");
     });
 }
 
@@ -62,6 +64,8 @@ void check(const Settings& s)
             throw InvalidInput(fmt::format("domain.import.{}: {} is not there", key, file));
     if (from.elements.empty() && !(from.bonds.empty() && from.near.empty()))
         throw InvalidInput("domain.import: bonds or near pairs need elements; set domain.import.elements");
+    if (from.alone && from.elements.empty())
+        throw InvalidInput("domain.import.alone: needs a packing; set domain.import.elements");
     std::vector<std::string> readable = written_formats();
     readable.insert(readable.end(), {"auto", "listing"});
     const auto known = [](const char* key, const std::string& name, const std::vector<std::string>& names) {

@@ -101,7 +101,9 @@ Json do_mesh(Workspace& w, const fs::path& folder)
 
 Json do_domain(Workspace& w, const fs::path& folder)
 {
-    w.discretisation_ = domain::discretise(w.micro(), w.surface(), w.s.microstructure.R_C, w.s.domain);
+    w.discretisation_ = w.s.without_images()
+                            ? domain::import_domain(w.s.domain)
+                            : domain::discretise(w.micro(), w.surface(), w.s.microstructure.R_C, w.s.domain);
     w.micro_.reset();
     w.surface_.reset();
     domain::save(*w.discretisation_, w.s.domain, folder);
@@ -128,6 +130,15 @@ std::string content(RoomSettings s)
     return settings_json([&](Schema& schema) { describe(schema, s); }, false).dump();
 }
 
+// What an imported packing's files hold.
+std::string imported(const domain::Settings& s)
+{
+    Hash hash;
+    for (const std::string& file : {s.import_from.elements, s.import_from.bonds, s.import_from.near})
+        if (!file.empty()) hash.add_file(file);
+    return hash.digest();
+}
+
 std::vector<Step> steps(const Settings& s, const RunOptions& options)
 {
     const auto w = std::make_shared<Workspace>();
@@ -138,13 +149,16 @@ std::vector<Step> steps(const Settings& s, const RunOptions& options)
         return [w, work](const fs::path& folder) { return work(*w, folder); };
     };
     std::vector<Step> all;
-    if (s.synthetic()) all.push_back({"synth", content(s.synth), {}, with(do_synth)});
-    const std::string stack = s.synthetic() ? "" : Hash().add_file(s.images.source).digest();
-    all.push_back({"images", content(s.images) + stack, {}, with(do_images)});
-    if (s.synthetic()) all.back().after = {"synth"};
-    all.push_back({"microstructure", content(s.microstructure), {"images"}, with(do_microstructure)});
-    all.push_back({"mesh", content(s.mesh), {"microstructure"}, with(do_mesh)});
-    all.push_back({"domain", content(s.domain), {"microstructure", "mesh"}, with(do_domain)});
+    if (!s.without_images()) {
+        if (s.synthetic()) all.push_back({"synth", content(s.synth), {}, with(do_synth)});
+        const std::string stack = s.synthetic() ? "" : Hash().add_file(s.images.source).digest();
+        all.push_back({"images", content(s.images) + stack, {}, with(do_images)});
+        if (s.synthetic()) all.back().after = {"synth"};
+        all.push_back({"microstructure", content(s.microstructure), {"images"}, with(do_microstructure)});
+        all.push_back({"mesh", content(s.mesh), {"microstructure"}, with(do_mesh)});
+    }
+    all.push_back({"domain", content(s.domain) + imported(s.domain), {}, with(do_domain)});
+    if (!s.without_images()) all.back().after = {"microstructure", "mesh"};
     all.push_back({"loading", content(s.loading), {"domain"}, with(do_loading)});
     all.push_back({"report", content(s.report), {"loading"}, with(do_report)});
     return all;

@@ -24,7 +24,7 @@ void check(const Settings& s)
         synth::check(s.synth);
         images.source = ".";  // the stack is made later; anything that exists will do
     }
-    images::check(images);
+    if (!s.without_images()) images::check(images);
     microstructure::check(s.microstructure);
     mesh::check(s.mesh);
     domain::check(s.domain);

@@ -24,7 +24,9 @@ struct Settings {
     loading::Settings loading;
     report::Settings report;
 
-    bool synthetic() const { return images.source.empty(); }
+    /// A packing made elsewhere goes through loading and report by itself.
+    bool without_images() const { return domain.import_from.alone; }
+    bool synthetic() const { return !without_images() && images.source.empty(); }
 };
 
 void describe(Schema& schema, Settings& settings);

@@ -1,3 +1,6 @@
+#include "craze/core/json.hpp"
+#include "craze/domain/room.hpp"
+#include "craze/loading/calibration.hpp"
 #include "support/command.hpp"
 
 #include <gtest/gtest.h>
@@ -126,6 +129,62 @@ TEST_F(CommandLine, OneAndTwoThreadsGiveTheSameBitsInEveryRoom)
         ++files;
     }
     EXPECT_GT(files, 20);
+}
+
+TEST_F(CommandLine, APackingMadeElsewhereGoesThroughLoadingAndReport)
+{
+    const Vec3 box{4e-6, 3.6e-6, 3.8e-6};
+    const domain::Domain packing = domain::pack(box, 200e-9, {});
+    domain::write_domain(packing, "csv", folder / "packing");
+    const std::string files = path("packing/elements.csv") + " " + path("packing/bonds.csv");
+    const auto ran = run_craze(
+        "domain --import " + files +
+        " --box '4 um' '3.6 um' '3.8 um' --set loading.beam.calibrate=false --set loading.uniaxial.points=2 --set "
+        "loading.triaxial.points=2 '--set=loading.specimens=[\"dense\"]' --out " +
+        path("taken"));
+    ASSERT_EQ(ran.code, 0) << ran.out;
+    const Json taken = Json::parse(content_of(path("taken/domain/summary.json")));
+    EXPECT_EQ(taken["elements"], packing.elements.size());
+    EXPECT_EQ(taken["bonds"], packing.bonds.size());
+    EXPECT_EQ(taken["p_DE"], 0.0);
+    const Json loading = Json::parse(content_of(path("taken/loading/summary.json")));
+    // The same packing loaded without files in between.
+    const auto given = loading::measure_given(packing, {}, {}, {});
+    const auto& modulus = loading["moduli"]["dense"]["tension_Pa"];
+    EXPECT_NEAR(modulus["x"].get<double>() / given.path.back().E.x, 1.0, 1e-4);
+    EXPECT_NEAR(modulus["z"].get<double>() / given.path.back().E.z, 1.0, 1e-4);
+    EXPECT_TRUE(fs::exists(path("taken/report/index.html")));
+    EXPECT_FALSE(fs::exists(path("taken/images")));
+
+    // Plain numbers count the unit of the files.
+    write("in_um.csv", "x,y,z,r\n1,1,1,1\n2.9,1,1,1\n");
+    write("bonds.csv", "i,j\n0,1\n");
+    const std::string um = "domain --import " + path("in_um.csv") + " " + path("bonds.csv") + " --unit um --box 4 2 ";
+    EXPECT_NE(run_craze(um + "2000e-6 --out " + path("thin")).out.find("lies outside the box"), std::string::npos);
+    EXPECT_NE(run_craze(um + "'2 kg' --out " + path("kg")).out.find("kg"), std::string::npos);
+}
+
+TEST_F(CommandLine, ABadPackingIsRefusedByFileAndLine)
+{
+    const auto expect = [&](const std::string& elements, const std::string& bonds, const std::string& needle) {
+        write("e.csv", elements);
+        write("b.csv", bonds);
+        const auto ran = run_craze("domain --import " + path("e.csv") + " " + path("b.csv") +
+                                   " --box '8 m' '2 m' '2 m' --out " + path("bad"));
+        EXPECT_EQ(ran.code, 2) << ran.out;
+        EXPECT_NE(ran.out.find(needle), std::string::npos) << ran.out;
+    };
+    const std::string two = "x,y,z,r\n1,1,1,1\n3,1,1,1\n";
+    expect(two, "i,j\n0,1\n0,2\n", "b.csv, line 3");
+    expect(two, "i,j\n1,1\n", "b.csv, line 2");
+    expect(two, "i,j\n0,1\n1,0\n", "b.csv, line 3");
+    expect("x,y,z,r\n1,1,1,1\n3,nan,1,1\n", "i,j\n0,1\n", "e.csv, line 3");
+    expect("x,y,z,r\n1,1,1,1\n3,1,1,0\n", "i,j\n0,1\n", "e.csv, line 3");
+    expect("x,y,z,r\n1,1,1,1\n1.2,1,1,1\n", "i,j\n0,1\n", "beyond reason");
+    EXPECT_EQ(run_craze("domain").code, 2);
+    EXPECT_EQ(run_craze("domain --box 1 1 1").code, 2);
+    EXPECT_NE(run_craze("domain --import " + path("nowhere.csv")).out.find("nowhere.csv is not there"),
+              std::string::npos);
 }
 
 TEST_F(CommandLine, AnInterruptKeepsFinishedRoomsAndResumeGoesOn)
