@@ -29,4 +29,14 @@ struct VtuGrid {
 /// @throws InvalidInput  when a field does not fit its points or lines, or the file cannot be written
 void write_vtu(const std::filesystem::path& file, const VtuGrid& grid);
 
+/// What a picture of a written state needs.
+struct VtuPoints {
+    std::vector<double> points;       ///< m, shape (n, 3)
+    std::vector<float> radius;        ///< m, shape (n,)
+    std::vector<float> displacement;  ///< m, shape (n, 3)
+};
+/// Reads back a file of write_vtu with point fields "radius" and "displacement".
+/// @throws InvalidInput  when the file is missing, cut short or was written by something else
+VtuPoints read_vtu_points(const std::filesystem::path& file);
+
 }  // namespace craze::io

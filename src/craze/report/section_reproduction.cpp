@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace craze::report {
@@ -68,15 +67,17 @@ void write_reproduction(Work& work)
             fmt::format("Pores alone, at the measured porosity: Eq. 18 gives {} GPa, the upper bound of Hashin and "
                         "Shtrikman {} GPa.",
                         format_number(theory, 4), format_number(bound, 4)));
-    std::vector<fs::path> drawings;
-    for (const auto& entry : fs::directory_iterator(folder))
-        if (entry.path().extension() == ".svg") drawings.push_back(entry.path());
-    std::sort(drawings.begin(), drawings.end());
+    const Json list = fs::exists(folder / "figures.json") ? read_json(folder / "figures.json") : Json::array();
     work.page.add("<div class=\"row\">");
-    for (const auto& file : drawings) {
-        auto name = file.stem().string();
-        std::replace(name.begin(), name.end(), '_', ' ');
-        work.page.drawing("reproduce_" + file.stem().string(), io::read_text(file), name);
+    for (const auto& shown : list) {
+        const fs::path file = folder / shown.value("file", std::string());
+        const auto id = "reproduce_" + file.stem().string();
+        const auto caption = shown.value("caption", std::string()), paper = shown.value("paper", std::string());
+        if (!fs::exists(file)) continue;
+        if (file.extension() == ".png")
+            work.page.picture(id, io::read_text(file), caption, paper);
+        else
+            work.page.drawing(id, io::read_text(file), caption, paper);
     }
     work.page.add("</div>");
 }

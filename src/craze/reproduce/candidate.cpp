@@ -97,16 +97,19 @@ loading::Settings laboratory(const Study& study, const loading::Calibration& cal
     loading::Settings s;
     s.beam.calibrate = false;
     s.beam.given = calibration.beam;
-    s.specimens = {"dense", "pores", "cracks", "both"};
+    s.specimens = study.specimens;
     s.residual = study.residual;
     s.moduli.run = study.moduli;
     s.moduli.specimens = s.specimens;
     s.uniaxial.run = study.uniaxial_points > 0;
     s.uniaxial.points = std::max<std::int64_t>(1, study.uniaxial_points);
-    s.uniaxial.compression = 5.9e-3;  // Fig. 19 is taken there
+    s.uniaxial.compression = 5.9e-3;
+    s.output.states = {-5.9e-3};  // [Fig. 19]
+    s.output.last_state = false;
     s.triaxial.run = study.triaxial_points > 0;
     s.triaxial.points = std::max<std::int64_t>(1, study.triaxial_points);
-    s.triaxial.specimens = {"pores", "cracks", "both"};
+    s.triaxial.specimens = study.specimens;
+    std::erase(s.triaxial.specimens, "dense");
     if (study.closed)
         s.triaxial.specimens.insert(s.triaxial.specimens.end(), {"dense", "cracks closed", "both closed"});
     for (const double T : study.thicknesses) {
@@ -122,6 +125,7 @@ std::vector<loading::Settings> fracture_laboratories(const Study& study, const l
     quiet.beam.calibrate = false;
     quiet.beam.given = calibration.beam;
     quiet.specimens = {"both"};
+    quiet.output.last_state = false;
     quiet.moduli.run = quiet.uniaxial.run = quiet.triaxial.run = false;
     quiet.fracture.run = true;
     quiet.fracture.crossings = study.crossings;
@@ -130,6 +134,7 @@ std::vector<loading::Settings> fracture_laboratories(const Study& study, const l
     for (const double strength : study.strengths) {
         auto s = quiet;
         s.fracture.strengths = {strength};
+        s.output.last_state = strength == 30e9;  // [Fig. 24]
         // The strain of failure grows with the strength of the bonds, and so must the path.
         s.fracture.tension = study.tension * strength / 10e9;
         s.fracture.compression = study.compression * strength / 10e9;

@@ -13,6 +13,7 @@ namespace craze::reproduce {
 
 /// What is measured, and how.
 struct Study {
+    std::vector<std::string> specimens{"dense", "pores", "cracks", "both"};
     bool moduli = true;                 ///< Table 3
     std::int64_t uniaxial_points = 0;   ///< points of each stress-strain curve; 0: none [Fig. 18]
     std::int64_t triaxial_points = 15;  ///< points to eta = 1.5 %; 0: none [Fig. 21]

@@ -29,13 +29,20 @@ std::vector<Parameter> chosen(const FitSettings& settings)
 
 class Search {
 public:
-    Search(const synth::Settings& start, const FitSettings& settings, const Place& place)
+    Search(const synth::Settings& start, const FitSettings& settings, double box, const Place& place)
         : recipe_(start), settings_(settings), parameters_(chosen(settings)), place_(place)
     {
-        const auto edge = std::max<std::int64_t>(16, std::lround(settings.box / recipe_.voxel_size));
+        const auto edge = std::max<std::int64_t>(16, std::lround(box / recipe_.voxel_size));
         recipe_.shape = {edge, edge, edge};
         study_.triaxial_points = settings.triaxial_points;
         study_.residual = 1e-4;
+        // The search turns cracks: specimens without them stay as they are.
+        study_.specimens = {"cracks", "both"};
+        for (const char* other : {"dense", "pores"})
+            if (std::any_of(settings.targets.begin(), settings.targets.end(), [&](const std::string& key) {
+                    return key.find(fmt::format(".{}", other)) != std::string::npos;
+                }))
+                study_.specimens.emplace_back(other);
         if (settings.crossings > 0.0) {
             study_.strengths = {10e9};
             study_.crossings = settings.crossings;
@@ -97,7 +104,8 @@ private:
     {
         if (place_.folder.empty()) return measure(recipe, bench, study_).numbers;
         const auto text = pipeline::settings_json([&](Schema& schema) { describe(schema, recipe); }, false).dump();
-        const auto how = fmt::format("{} {} {}", study_.triaxial_points, study_.crossings, study_.strengths.size());
+        const auto how = fmt::format("{} {} {} {}", study_.triaxial_points, study_.crossings, study_.strengths.size(),
+                                     study_.specimens.size());
         const auto file = place_.folder / "candidates" / (Hash().add(version).add(text).add(how).digest() + ".json");
         if (place_.resume && std::filesystem::exists(file))
             if (const Json kept = Json::parse(io::read_text(file), nullptr, false); kept.is_object())
@@ -128,8 +136,9 @@ Fit fit_coating(const synth::Settings& start, const FitSettings& settings, const
             "density: the first upright (normals about x and y), the second lying (about z)");
     synth::Settings from = start;
     for (auto& c : from.cracks) c.porosity = 0.0;  // openings as drawn: their median is a parameter
-    const Search search(from, settings, place);
-    const auto per_round = static_cast<std::int64_t>((search.size() + 2) * settings.seeds.size());
+    const Search search(from, settings, settings.box, place);
+    const Search slopes(from, settings, settings.slope_box, place);
+    const auto per_round = static_cast<std::int64_t>((search.size() + 3) * settings.seeds.size());
     Progress progress("fit-coating: candidates", std::max<std::int64_t>(1, settings.rounds) * per_round);
 
     Fit fit{from, {search.tried(search.start(), progress)}, {}, settings};
@@ -137,9 +146,12 @@ Fit fit_coating(const synth::Settings& start, const FitSettings& settings, const
     for (std::int64_t round = 0; round < std::max<std::int64_t>(1, settings.rounds); ++round) {
         const Trial base = fit.path.back();
         const std::vector<double> r0 = search.residuals(base);
+        // On the same seeds differences are not noise, so that slopes need no large box.
+        const Trial flat = slopes.tried(base.parameters, progress);
+        const std::vector<double> flat_r = slopes.residuals(flat);
         Eigen::MatrixXd J(static_cast<Eigen::Index>(r0.size()), static_cast<Eigen::Index>(search.size()));
         fit.sensitivity.clear();
-        for (const auto& [key, value] : base.numbers) fit.sensitivity[key].assign(search.size(), 0.0);
+        for (const auto& [key, value] : flat.numbers) fit.sensitivity[key].assign(search.size(), 0.0);
         for (std::size_t p = 0; p < search.size(); ++p) {
             auto values = base.parameters;
             values[p] = search.bounded(p, values[p] * std::exp(settings.step));
@@ -148,14 +160,14 @@ Fit fit_coating(const synth::Settings& start, const FitSettings& settings, const
                 values[p] = base.parameters[p] * std::exp(-settings.step);
                 step = -settings.step;
             }
-            const Trial turned = search.tried(values, progress);
-            const auto r = search.residuals(turned);
+            const Trial turned = slopes.tried(values, progress);
+            const auto r = slopes.residuals(turned);
             for (std::size_t k = 0; k < r.size(); ++k)
-                J(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(p)) = (r[k] - r0[k]) / step;
+                J(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(p)) = (r[k] - flat_r[k]) / step;
             for (auto& [key, row] : fit.sensitivity)
                 if (const auto found = turned.numbers.find(key);
-                    found != turned.numbers.end() && found->second.mean > 0.0 && base.numbers.at(key).mean > 0.0)
-                    row[p] = std::log(found->second.mean / base.numbers.at(key).mean) / step;
+                    found != turned.numbers.end() && found->second.mean > 0.0 && flat.numbers.at(key).mean > 0.0)
+                    row[p] = std::log(found->second.mean / flat.numbers.at(key).mean) / step;
         }
         if (settings.rounds == 0) break;
         // Damped normal equations; a step that does not help is tried again shorter.
@@ -189,11 +201,9 @@ Json summary(const Fit& fit)
         for (const auto& [key, s] : trial.numbers) numbers[key] = {{"mean", s.mean}, {"deviation", s.deviation}};
         path.push_back({{"parameters", trial.parameters}, {"misfit", trial.misfit}, {"numbers", numbers}});
     }
-    return {{"parameters", fit.settings.parameters},
-            {"targets", fit.settings.targets},
-            {"seeds", fit.settings.seeds},
-            {"box_m", fit.settings.box},
-            {"path", path},
+    return {{"parameters", fit.settings.parameters}, {"targets", fit.settings.targets},
+            {"seeds", fit.settings.seeds},           {"box_m", fit.settings.box},
+            {"slope_box_m", fit.settings.slope_box}, {"path", path},
             {"sensitivity", fit.sensitivity}};
 }
 
@@ -201,9 +211,10 @@ std::string page(const Fit& fit)
 {
     const Trial& first = fit.path.front();
     const Trial& last = fit.path.back();
-    std::string md =
-        fmt::format("# Fit of a coating\n\n{} seeds, cubes of {:g} um. Misfit {:.2f} -> {:.2f} of the goals.\n\n",
-                    fit.settings.seeds.size(), 1e6 * fit.settings.box, first.misfit, last.misfit);
+    std::string md = fmt::format(
+        "# Fit of a coating\n\n{} seeds, cubes of {:g} um, slopes on {:g} um. Misfit {:.2f} -> {:.2f} of the "
+        "goals.\n\n",
+        fit.settings.seeds.size(), 1e6 * fit.settings.box, 1e6 * fit.settings.slope_box, first.misfit, last.misfit);
     md += "| parameter | meaning | start | fitted |\n|---|---|---|---|\n";
     const auto list = chosen(fit.settings);
     for (std::size_t p = 0; p < list.size(); ++p)

@@ -26,12 +26,14 @@ const std::vector<Parameter>& parameters();
 
 struct FitSettings {
     std::vector<std::string> parameters{"density", "radius", "across_y", "lying", "aperture", "aperture_spread"};
-    std::vector<std::string> targets{"porosity.cracks", "T2.median", "E.cracks.x", "E.cracks.y", "E.cracks.z",
-                                     "E.both.x",        "E.both.y",  "E.both.z",   "K.start",    "K.end"};
+    std::vector<std::string> targets{"porosity.cracks", "T2.median",    "T2.most",  "E.cracks.x",
+                                     "E.cracks.y",      "E.cracks.z",   "E.both.x", "E.both.y",
+                                     "E.both.z",        "ratio.cracks", "K.start",  "K.end"};
     std::vector<std::int64_t> seeds{1, 2};
-    double box = 7e-6;        ///< edge of the cube on which candidates are tried, m
-    std::int64_t rounds = 3;  ///< of the search; 0: sensitivities at the start only
-    double step = 0.15;       ///< change of the logarithm of a parameter that its sensitivity is measured with
+    double box = 12e-6;       ///< edge of the cube on which candidates are tried, m
+    double slope_box = 7e-6;  ///< and of the one on which a parameter is turned to see what hangs on it
+    std::int64_t rounds = 2;  ///< of the search; 0: sensitivities at the start only
+    double step = 0.25;       ///< change of the logarithm of a parameter that its sensitivity is measured with
     std::int64_t triaxial_points = 4;
     double crossings = 0.0;  ///< above 0: strengths at 10 GPa too, in every candidate
 };
@@ -61,7 +63,7 @@ struct Fit {
 };
 
 /// Least squares on the logarithms of the parameters (Gauss-Newton, damped by Levenberg and Marquardt), each candidate
-/// on the same seeds so that differences are not noise.
+/// on the same seeds so that differences are not noise; slopes are measured on a smaller cube.
 /// @param place  candidates are kept in <folder>/candidates as they come; a search that goes on takes them from there
 /// @throws InvalidInput  when the recipe has not the populations that the parameters ask for
 Fit fit_coating(const synth::Settings& start, const FitSettings& settings, const Place& place = {});

@@ -1,8 +1,6 @@
 #include "craze/core/json.hpp"
 #include "craze/io/atomic_file.hpp"
-#include "craze/loading/specimen.hpp"
-#include "craze/report/figure.hpp"
-#include "craze/reproduce/reproduce.hpp"
+#include "craze/reproduce/figures.hpp"
 
 #include <fmt/format.h>
 
@@ -20,61 +18,6 @@ bool is_fitted(const Reproduction& result, const std::string& key)
 
 /// Numbers that the size of the box decides, and so says nothing about, when it is small.
 bool of_the_box(const std::string& key) { return key == "elements" || key == "bonds"; }
-
-/// Triaxial curves of the first seed: specimens chosen by `wanted`, one quantity over eta.
-template <class Wanted, class Value>
-report::Figure triaxial(const Reproduction& result, Wanted&& wanted, Value&& value)
-{
-    report::Figure figure;
-    figure.x.title = "eta [%]";
-    for (const auto& curve : result.curves.front().curves) {
-        if (curve.loading.kind != loading::Loading::Kind::triaxial || !wanted(curve.loading.specimen)) continue;
-        report::Series series;
-        series.name = loading::specimen_name(curve.loading.specimen);
-        for (const auto& point : curve.points) {
-            series.x.push_back(100.0 * point.eta);
-            series.y.push_back(value(point));
-        }
-        figure.series.push_back(std::move(series));
-    }
-    return figure;
-}
-
-std::vector<report::Figure> figures(const Reproduction& result)
-{
-    std::vector<report::Figure> out;
-    if (result.curves.empty()) return out;
-    const auto constant = [](const domain::Defects& d) { return d.thickness == domain::Defects::Thickness::constant; };
-    struct Quantity {
-        const char *id, *title;
-        double (*value)(const loading::Point&);
-    };
-    const Quantity quantities[] = {{"pressure", "P_h [GPa]", [](const loading::Point& p) { return 1e-9 * p.pressure; }},
-                                   {"bulk", "K [GPa]", [](const loading::Point& p) { return 1e-9 * p.bulk; }},
-                                   {"closure", "gamma [%]", [](const loading::Point& p) { return 100.0 * p.closure; }}};
-    for (const auto& q : quantities) {
-        auto defects = triaxial(
-            result, [&](const auto& d) { return !constant(d); }, q.value);
-        defects.id = fmt::format("fig21_{}", q.id);
-        defects.paper = "Fig. 21";
-        defects.y.title = q.title;
-        defects.caption = "Triaxial compression of pores, open cracks, and both.";
-        if (std::string_view(q.id) == "bulk") {
-            defects.guides.push_back({52.0, "paper, both, eta = 0", false});
-            defects.guides.push_back({70.0, "paper, both, eta = 1.5 %", false});
-        }
-        out.push_back(std::move(defects));
-        auto thickness = triaxial(
-            result, [&](const auto& d) { return constant(d) || (!d.pores && d.cracks); }, q.value);
-        thickness.id = fmt::format("fig22_{}", q.id);
-        thickness.paper = "Fig. 22";
-        thickness.y.title = q.title;
-        thickness.caption = "Cracks only: constant thicknesses beside T2.";
-        out.push_back(std::move(thickness));
-    }
-    std::erase_if(out, [](const report::Figure& figure) { return figure.empty(); });
-    return out;
-}
 
 }  // namespace
 
@@ -144,10 +87,20 @@ void save(const Reproduction& result, const std::filesystem::path& folder)
     std::filesystem::create_directories(folder);
     io::write_text(folder / "reproduction.md", "# Reproduction\n\n" + page(result));
     io::write_text(folder / "reproduction.json", summary(result).dump(1) + "\n");
+    Json list = Json::array();
+    const auto add = [&](const auto& shown, const char* kind) {
+        list.push_back({{"file", shown.id + kind}, {"caption", shown.caption}, {"paper", shown.paper}});
+    };
     for (const auto& figure : figures(result)) {
         io::write_text(folder / (figure.id + ".svg"), report::svg(figure));
         io::write_text(folder / (figure.id + ".csv"), report::csv(figure));
+        add(figure, ".svg");
     }
+    for (const auto& field : fields(folder / fmt::format("seed_{}", result.settings.seeds.front()))) {
+        io::write_png(folder / (field.id + ".png"), field.picture);
+        add(field, ".png");
+    }
+    io::write_text(folder / "figures.json", list.dump(1) + "\n");
 }
 
 }  // namespace craze::reproduce

@@ -78,6 +78,7 @@ void describe(Schema& schema, FitSettings& s)
     schema.texts("targets", s.targets, "keys of the numbers that are fitted; all others are predicted");
     schema.integers("seeds", s.seeds, {0, 9e15}, "coatings over which each candidate is averaged");
     schema.quantity("box", s.box, Dimension::length, {2e-6, 1e-3}, "edge of the cube on which candidates are tried");
+    schema.quantity("slope_box", s.slope_box, Dimension::length, {2e-6, 1e-3}, "the same for sensitivities");
     schema.integer("rounds", s.rounds, {0, 50}, "rounds of the search; 0: sensitivities only");
     schema.number("step", s.step, {0.01, 1}, "relative change that sensitivities are measured with");
     schema.integer("triaxial_points", s.triaxial_points, {3, 200}, "points of the triaxial curves");

@@ -74,7 +74,6 @@ Numbers by_images(const synth::Settings& coating, const Bench& bench, Study stud
     p.loading = laboratory(study, bench.calibration);
     if (const auto fracture = fracture_laboratories(study, bench.calibration); !fracture.empty())
         p.loading.fracture = fracture.front().fracture;
-    p.loading.output.states = {-5.9e-3};
     pipeline::check(p);
     pipeline::run(p, {"", place.folder, {}, place.resume});
 

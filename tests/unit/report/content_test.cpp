@@ -253,7 +253,10 @@ TEST_F(Folder, ReproductionMarksWhatMissesItsAimAndWhatWasFitted)
         "UTS": {"where": "Table 4", "what": "UTS", "unit": "MPa", "paper": 61, "goal": 0.15, "mean": 90, "deviation": 3, "fitted": false}}})");
     io::write_text(out / "reproduce" / "fig_21a.svg",
                    "<svg xmlns=\"http://www.w3.org/2000/svg\"><script>alert(1)</script></svg>");
+    io::write_text(out / "reproduce" / "figures.json",
+                   R"([{"file": "fig_21a.svg", "caption": "Pressure", "paper": "Fig. 21a"}, {"file": "gone.png"}])");
     const auto text = page();
+    EXPECT_NE(text.find("Fig. 21a"), std::string::npos);
     EXPECT_NE(text.find("+4.5 %<"), std::string::npos);
     EXPECT_NE(text.find("+47.5 % *"), std::string::npos);
     EXPECT_NE(text.find("93 ± 2"), std::string::npos);

@@ -103,7 +103,7 @@ TEST(Fit, OfATinyCoatingDoesNotGetWorse)
     s.parameters = {"aperture"};
     s.targets = {"T2.median", "porosity.cracks"};
     s.seeds = {1};
-    s.box = 3.2e-6;
+    s.box = s.slope_box = 3.2e-6;
     s.rounds = 1;
     s.triaxial_points = 3;
     synth::Settings recipe;
