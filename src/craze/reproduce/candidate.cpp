@@ -181,8 +181,12 @@ Numbers numbers_of(const domain::Discretisation& discretisation, const loading::
 Candidate measure(const synth::Settings& recipe, const Bench& bench, const Study& study, const Keep& keep)
 {
     const synth::Coating coating = synth::make_coating(recipe);
-    const synth::Sight sight =
+    synth::Sight sight =
         study.as_seen ? synth::Sight(recipe.microscope, recipe.voxel_size, study.threshold) : synth::Sight();
+    if (study.as_seen) {
+        sight.rim = 2.0 * recipe.voxel_size;
+        sight.margin = R_E;
+    }
     const double R_B = bench.calibration.beam.r_tilde * bench.R_DE;
     Candidate out;
     out.discretisation = synth::discretise(coating, bench.dense, R_B, sight);

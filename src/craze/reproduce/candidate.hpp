@@ -11,6 +11,9 @@
 
 namespace craze::reproduce {
 
+/// Radii of the classification [2.4.3], m.
+constexpr double R_C = 8.5 * 23.6e-9, R_E = 4.5 * 23.6e-9;
+
 /// What is measured, and how.
 struct Study {
     std::vector<std::string> specimens{"dense", "pores", "cracks", "both"};
@@ -29,7 +32,9 @@ struct Study {
     /// Let unbonded neighbours push [Eq. 5]. Our reading: off in states of rest. The paper's dense and porous samples
     /// are linear in compression; with these contacts they stiffen by a tenth (docs/reproduction.md).
     bool near_contacts = false;
-    bool as_seen = true;       ///< thickness and cuts as a microscope would see them; else as they are
+    /// Thickness and cuts as the image chain would see them: thin openings lost, cracks drawn back from their rims by
+    /// two voxels, and counted as pores within R_E of one. Else as they are.
+    bool as_seen = true;
     double threshold = 111.0;  ///< S that the microscope's gray levels lead to
     double residual = 1e-5;    ///< of equilibrium
     domain::Settings domain;

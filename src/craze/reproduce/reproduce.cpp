@@ -20,8 +20,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double R_C = 8.5 * 23.6e-9, R_E = 4.5 * 23.6e-9;  // m [2.4.3]
-
 Study study_of(const Settings& s)
 {
     Study study;
@@ -63,6 +61,7 @@ Numbers by_images(const synth::Settings& coating, const Bench& bench, Study stud
     p.images.denoise.search = search;
     p.microstructure.R_C = R_C / coating.voxel_size;
     p.microstructure.R_E = R_E / coating.voxel_size;
+    p.mesh.skeleton = mesh::SkeletonKind::medial_surface;
     p.domain = study.domain;
     p.domain.seed = coating.seed;
     p.domain.mean_radius = bench.R_DE;

@@ -22,7 +22,8 @@ Crossing foot(const Crack& crack, const Vec3& from, const Vec3& along, double s0
         (near_start ? s0 : s1) = s;
         (near_start ? d0 : d1) = seen.distance;
     }
-    return {point, seen.opening, std::abs(dot(seen.normal, along)) / length};
+    return {point, seen.opening, std::abs(dot(seen.normal, along)) / length,
+            (1.0 - std::sqrt(std::min(1.0, seen.rho2))) * std::min(crack.a, crack.b)};
 }
 
 }  // namespace
@@ -46,7 +47,8 @@ void Cutter::add(Members& members, std::int32_t defect, const Vec3& centre, doub
             }
 }
 
-Cutter::Cutter(const Coating& coating, double reach) : coating_(coating), edge_(2.0 * reach)
+Cutter::Cutter(const Coating& coating, double reach, double margin)
+    : coating_(coating), edge_(2.0 * reach), margin_(margin)
 {
     std::size_t cells = 1;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -65,8 +67,9 @@ Cutter::Cutter(const Coating& coating, double reach) : coating_(coating), edge_(
     for (std::size_t p = 0; p < coating.pores.size(); ++p) {
         const auto ball = bounding_ball(coating.pores[p]);
         const Vec3 centre{ball[0], ball[1], ball[2]};
-        add(pores_, static_cast<std::int32_t>(p), centre, ball[3] + around,
-            [&](const Vec3& middle) { return norm(middle - centre) <= ball[3] + around; });
+        const double near = ball[3] + around + margin;
+        add(pores_, static_cast<std::int32_t>(p), centre, near,
+            [&](const Vec3& middle) { return norm(middle - centre) <= near; });
     }
 }
 
@@ -85,6 +88,15 @@ bool Cutter::in_pore(const Vec3& point) const
     });
 }
 
+bool Cutter::by_pore(const Vec3& point) const
+{
+    const auto& near = pores_[cell_of(point)];
+    return std::any_of(near.begin(), near.end(), [&](std::int32_t p) {
+        const Pore& pore = coating_.pores[static_cast<std::size_t>(p)];
+        return contains(pore, point) || (margin_ > 0.0 && facing(pore, point).distance < margin_);
+    });
+}
+
 void Cutter::cross(const Vec3& middle, const Vec3& from, const Vec3& to, std::vector<Crossing>& found) const
 {
     constexpr int parts = 4;  // waves of a sheet are longer than half a bond
@@ -99,7 +111,7 @@ void Cutter::cross(const Vec3& middle, const Vec3& from, const Vec3& to, std::ve
             const double s1 = static_cast<double>(p) / parts, d1 = view(crack, from + s1 * along).distance;
             if ((d0 < 0.0) != (d1 < 0.0)) {
                 const Crossing crossing = foot(crack, from, along, s0, d0, s1, d1);
-                if (crossing.opening > 0.0 && crossing.cosine > 0.0 && !in_pore(crossing.point))
+                if (crossing.opening > 0.0 && crossing.cosine > 0.0 && !by_pore(crossing.point))
                     found.push_back(crossing);
             }
             s0 = s1;

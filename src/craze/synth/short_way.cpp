@@ -42,7 +42,7 @@ domain::PairCracks cut_pairs(const domain::Elements& elements, const std::vector
             found.clear();
             cutter.cross(middle, from, to, found);
             const auto seen = std::count_if(found.begin(), found.end(), [&](const Crossing& crossing) {
-                return crossing.opening > sight.least_opening();
+                return crossing.opening > sight.least_opening() && crossing.rim > sight.rim;
             });
             if (seen == 0) continue;
             cracks.cut[b] = static_cast<std::uint8_t>(std::min<std::ptrdiff_t>(seen, 255));
@@ -82,7 +82,7 @@ domain::Discretisation discretise(const Coating& coating, domain::Domain dense, 
     };
     measure(dense.bonds);
     measure(dense.near);
-    const Cutter cutter(coating, 0.5 * longest + R_B);
+    const Cutter cutter(coating, 0.5 * longest + R_B, sight.margin);
 
     domain::Discretisation out;
     const std::int32_t n = dense.elements.size();

@@ -26,6 +26,9 @@ public:
     /// The opening that leaves half a voxel below the threshold on average, m: thinner cracks are not taken for cracks.
     double least_opening() const { return least_; }
 
+    double rim = 0.0;     ///< how far the skeleton draws a crack back from its rim [2.5], m
+    double margin = 0.0;  ///< void so near to a pore is taken for part of it (R_E) [2.4.3], m
+
 private:
     double look_up(const std::vector<double>& table, double slope, double opening) const;
 
