@@ -14,6 +14,9 @@ namespace craze::reproduce {
 /// Radii of the classification [2.4.3], m.
 constexpr double R_C = 8.5 * 23.6e-9, R_E = 4.5 * 23.6e-9;
 
+/// The coating fitted to the paper's numbers: examples/coating.toml, docs/reproduction.md.
+synth::Settings recipe();
+
 /// What is measured, and how.
 struct Study {
     std::vector<std::string> specimens{"dense", "pores", "cracks", "both"};

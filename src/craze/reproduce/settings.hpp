@@ -8,7 +8,7 @@
 namespace craze::reproduce {
 
 struct AllSettings {
-    synth::Settings synth;  ///< the recipe; its shape is set by the size of what is done with it
+    synth::Settings synth = recipe();  ///< its shape is set by the size of what is done with it
     Settings reproduce;
     FitSettings fit;
 };

@@ -1,10 +1,12 @@
-#include "craze/reproduce/reproduce.hpp"
+#include "craze/reproduce/settings.hpp"
 
 #include "craze/core/errors.hpp"
 #include "craze/core/json.hpp"
 #include "craze/loading/specimen.hpp"
 
 #include <gtest/gtest.h>
+
+#include <unistd.h>
 
 #include <cmath>
 #include <set>
@@ -113,6 +115,54 @@ TEST(Fit, OfATinyCoatingDoesNotGetWorse)
     EXPECT_LE(fit.path.back().misfit, fit.path.front().misfit);
     EXPECT_GT(fit.sensitivity.at("porosity.cracks")[0], 0.5);
     EXPECT_NE(page(fit).find("fitted"), std::string::npos);
+}
+
+// The recipe that docs/reproduction.md speaks of is what the program does when none is given.
+TEST(Recipe, InTheExamplesIsTheBuiltInOne)
+{
+    AllSettings file = read({CRAZE_SOURCE_DIR "/examples/coating.toml", {}}), built_in;
+    const auto text = [](synth::Settings& s) {
+        return pipeline::settings_json([&](Schema& schema) { describe(schema, s); }).dump(1);
+    };
+    EXPECT_EQ(text(file.synth), text(built_in.synth));
+    EXPECT_THROW(read({"", {"reproduce.seeds=[1, 1]"}}), InvalidInput);
+    EXPECT_THROW(read({"", {"reproduce.search=8"}}), InvalidInput);
+    EXPECT_THROW(read({"", {"fit.targets=[\"E.both.q\"]"}}), InvalidInput);
+}
+
+// The short way of a small, coarse coating, stopped and gone on with: nothing is measured twice.
+TEST(Reproduction, GoesOnFromWhatIsDoneAndWritesItsPages)
+{
+    const auto folder = std::filesystem::temp_directory_path() / ("craze_reproduce_" + std::to_string(getpid()));
+    synth::Settings recipe;
+    recipe.voxel_size = 47.2e-9;
+    recipe.shape = {68, 68, 68};
+    Study study;
+    study.uniaxial_points = 1;
+    study.triaxial_points = 3;
+    study.strengths = {30e9};
+    study.crossings = 2;
+    study.cycles = {-1e-3};
+    const Bench bench = make_bench(synth::box_of(recipe), study, 1, false);
+    const Keep keep{folder / "seed_1", "key", true};
+    const auto first = measure(recipe, bench, study, keep);
+    std::filesystem::remove(folder / "seed_1" / "cycles_30_GPa" / "stamp.txt");
+    const auto again = measure(recipe, bench, study, keep);
+    EXPECT_EQ(first.numbers, again.numbers);
+    EXPECT_TRUE(first.numbers.contains("UCS/UTS.30"));
+    EXPECT_EQ(first.response.curves.size(), again.response.curves.size());
+
+    Reproduction result;
+    result.settings.seeds = {1};
+    result.seeds = {first.numbers};
+    result.curves = {first.response};
+    save(result, folder);
+    for (const char* file :
+         {"reproduction.md", "reproduction.json", "fig18_stress_strain.svg", "fig21_bulk.svg", "fig23_stress.svg",
+          "fig25_cycles.svg", "table4_strengths.svg", "fig19_compression_y.png", "fig24_tension.png", "figures.json"})
+        EXPECT_TRUE(std::filesystem::exists(folder / file)) << file;
+    EXPECT_NE(page(result).find("pores and cracks"), std::string::npos);
+    std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -1,0 +1,30 @@
+#include "craze/reproduce/candidate.hpp"
+
+namespace craze::reproduce {
+
+synth::Settings recipe()
+{
+    synth::Settings s;
+    s.cracks[0] = {.name = "intra-splat cracks",
+                   .shape = synth::CrackShape::wavy,
+                   .radius = {1.6e-6, 0.35, 0.3e-6, 5e-6},
+                   .elongation = 1.3,
+                   .normals = {0.345, 0.655, 0.0},
+                   .scatter = 0.25,
+                   .aperture = {90e-9, 0.5, 1e-9, 500e-9},
+                   .density = 0.275,
+                   .porosity = 0.0262};
+    s.cracks[1] = {.name = "inter-splat cracks",
+                   .shape = synth::CrackShape::bent,
+                   .radius = {1.6e-6, 0.35, 0.3e-6, 5e-6},
+                   .elongation = 1.3,
+                   .bend = 0.2,
+                   .normals = {0.0, 0.0, 1.0},
+                   .scatter = 0.25,
+                   .aperture = {90e-9, 0.5, 1e-9, 500e-9},
+                   .density = 0.040,
+                   .porosity = 0.0039};
+    return s;
+}
+
+}  // namespace craze::reproduce
