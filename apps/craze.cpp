@@ -190,6 +190,37 @@ int run(int argc, char** argv)
         });
     }
 
+    Recipe recipe;
+    std::string size;
+    auto* reproduce_verb =
+        app.add_subcommand("reproduce", "the paper's numbers beside ours, on coatings of known truth");
+    recipe.add_to(*reproduce_verb);
+    reproduce_verb->add_option("--size", size, "small: a cube of 8 um; paper: the paper's box, 92 000 elements")
+        ->check(CLI::IsMember({"small", "paper"}));
+    reproduce_verb->add_flag("--resume", resume, "go on from what an earlier run with the same recipe has finished");
+    reproduce_verb->callback([&] {
+        work = [&] {
+            auto s = recipe.read();
+            if (!size.empty()) s.reproduce.size = size == "paper" ? reproduce::Size::paper : reproduce::Size::small;
+            const fs::path out = recipe.out.empty() ? fs::path("out/reproduce") : fs::path(recipe.out);
+            fmt::print("{}", reproduce::page(reproduce::reproduce(s.synth, s.reproduce, {out, resume})));
+        };
+    });
+    auto* fit_verb = app.add_subcommand(
+        "fit-coating",
+        "search the cracks of a recipe for the paper's numbers; says what was fitted and what hangs on what");
+    recipe.add_to(*fit_verb);
+    fit_verb->add_flag("--resume", resume, "take candidates that an earlier run with the same settings has tried");
+    fit_verb->callback([&] {
+        work = [&] {
+            const auto s = recipe.read();
+            const fs::path out = recipe.out.empty() ? fs::path("out/fit-coating") : fs::path(recipe.out);
+            const auto fit = reproduce::fit_coating(s.synth, s.fit, {out, resume});
+            reproduce::save(fit, out);
+            fmt::print("{}", reproduce::page(fit));
+        };
+    });
+
     std::string file;
     bool force = false;
     auto* init = app.add_subcommand("init", "write a settings file with every key, its default, range and meaning");

@@ -80,6 +80,10 @@ TEST_F(CommandLine, RefusesWrongInputBeforeAnyWorkStarts)
     expect_refused("run", "SETTINGS is required");
     expect_refused("mesh " + path("small.toml"), "needs the results of microstructure");
     EXPECT_EQ(run_craze("rum").code, 2);
+    write("recipe.toml", "[fit]\nparameters = [\"densty\"]\n");
+    expect_refused("fit-coating " + path("recipe.toml"), "did you mean \"density\"?");
+    expect_refused("reproduce --size big", "big not in");
+    expect_refused("reproduce --set reproduce.sede=1", "did you mean \"seeds\"?");
     EXPECT_EQ(run_craze("--help").code, 0);
     EXPECT_EQ(run_craze("--version").code, 0);
 }
