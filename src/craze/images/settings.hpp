@@ -37,8 +37,8 @@ struct Stripes {
     int axis = 0;             ///< 0: stripes run along x (the paper's ion beam), 1: along y
     double length = 0.5;      ///< shortest stripe removed, as a share of the slice's extent along the stripes
     double protect = 64.0;    ///< px: variations across the stripes longer than this are kept
-    std::int64_t levels = 5;  ///< wavelet: levels of decomposition
-    double damping = 3.0;     ///< wavelet: width of the damped band, in waves per slice
+    std::int64_t levels = 7;  ///< wavelet: levels of decomposition
+    double damping = 12.0;    ///< wavelet: width of the damped band, in waves per slice
 };
 
 /// Non-local means [2.3 (3)].
@@ -59,7 +59,7 @@ struct Homogenise {
     enum class Correction { offset, gain };
     bool on = true;
     Axis axis = Axis::gradient;
-    By by = By::mean;  ///< mean: the paper; solid: the mode of the matter, unbiased by pores
+    By by = By::solid;  ///< solid: the mode of the matter, which pores do not bias; mean: the paper
     Correction correction = Correction::offset;
     double smooth = 0.0;  ///< px: standard deviation of the smoothing of the profile; 0: none
 };
