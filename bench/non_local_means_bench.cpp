@@ -23,17 +23,20 @@ Volume<std::uint8_t> coating(Shape shape)
     return v;
 }
 
-void filter(benchmark::State& state, bool in_volume)
+void filter(benchmark::State& state, Shape shape, bool in_volume)
 {
-    const auto v = coating({448, 128, in_volume ? 64 : 16});
+    const auto v = coating(shape);
     const images::NonLocalMeans settings{21, 5, in_volume, 12.0, 7.2};
     for (auto _ : state) benchmark::DoNotOptimize(images::non_local_means(v, settings).data());
     state.counters["us/voxel"] =
         benchmark::Counter(static_cast<double>(v.shape().voxels()) * 1e-6,
                            benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
-void non_local_means_3d(benchmark::State& state) { filter(state, true); }
-void non_local_means_2d(benchmark::State& state) { filter(state, false); }
+void non_local_means_3d(benchmark::State& state) { filter(state, {448, 128, 64}, true); }
+void non_local_means_2d(benchmark::State& state) { filter(state, {448, 128, 16}, false); }
+// For non_local_means_peer.py.
+void non_local_means_small(benchmark::State& state) { filter(state, {96, 64, 40}, true); }
+BENCHMARK(non_local_means_small)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(non_local_means_3d)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(non_local_means_2d)->Unit(benchmark::kMillisecond)->UseRealTime();
 
