@@ -66,7 +66,8 @@ void describe(Schema& schema, Settings& s)
         Homogenise& h = s.homogenise;
         schema.flag("on", h.on, "remove the intensity gradient");
         schema.option("axis", h.axis, {"x", "y", "z", "gradient"}, "direction of the gradient; gradient: fitted");
-        schema.option("by", h.by, {"mean", "solid"}, "level kept constant: that of the solid, which pores do not bias, or the mean (the paper)");
+        schema.option("by", h.by, {"mean", "solid"},
+                      "level kept constant: that of the solid, which pores do not bias, or the mean (the paper)");
         schema.option("correction", h.correction, {"offset", "gain"}, "add to the levels or multiply them");
         schema.quantity("smooth", h.smooth, Dimension::pixel, {0, 1e4}, "smoothing of the profile along the gradient");
     });

@@ -31,39 +31,10 @@ CRAZE_MULTIVERSION void add_scaled(float* __restrict row, const float* __restric
     for (std::int64_t x = 0; x < n; ++x) row[x] += factor * wave[x];
 }
 
-CRAZE_MULTIVERSION void fill_voids(float* __restrict filled, const float* __restrict row,
-                                   const std::uint8_t* __restrict solid, const float* __restrict model, std::int64_t n)
+CRAZE_MULTIVERSION void fill_voids(float* __restrict filled, const float* __restrict row, const float* __restrict model,
+                                   float low, float high, std::int64_t n)
 {
-    for (std::int64_t x = 0; x < n; ++x) filled[x] = solid[x] != 0 ? row[x] : model[x];
-}
-
-CRAZE_MULTIVERSION void mark_solid(std::uint8_t* __restrict solid, const float* __restrict row, float low, float high,
-                                   std::int64_t n)
-{
-    for (std::int64_t x = 0; x < n; ++x) solid[x] = row[x] >= low && row[x] <= high ? 1 : 0;
-}
-
-CRAZE_MULTIVERSION void both(std::uint8_t* __restrict to, const std::uint8_t* __restrict a,
-                             const std::uint8_t* __restrict b, const std::uint8_t* __restrict c, std::int64_t n)
-{
-    for (std::int64_t x = 0; x < n; ++x) to[x] = static_cast<std::uint8_t>(a[x] & b[x] & c[x]);
-}
-
-// Where a pixel and its eight neighbours are all solid: the rims of pores and cracks are darker than the solid, though
-// not dark enough to tell, and would pass for a stripe.
-std::vector<std::uint8_t> inner_solid(std::span<const float> slice, std::int64_t nx, std::int64_t ny,
-                                      const Solid& solid)
-{
-    const auto width = static_cast<std::size_t>(nx), height = static_cast<std::size_t>(ny);
-    std::vector<std::uint8_t> along(slice.size()), result(slice.size()), line(width + 2, 1);
-    for (std::size_t y = 0; y < height; ++y) {
-        mark_solid(&line[1], &slice[y * width], static_cast<float>(solid.low), static_cast<float>(solid.high), nx);
-        both(&along[y * width], &line[0], &line[1], &line[2], nx);
-    }
-    for (std::size_t y = 0; y < height; ++y)
-        both(&result[y * width], &along[(y > 0 ? y - 1 : y) * width], &along[y * width],
-             &along[std::min(y + 1, height - 1) * width], nx);
-    return result;
+    for (std::int64_t x = 0; x < n; ++x) filled[x] = row[x] >= low && row[x] <= high ? row[x] : model[x];
 }
 
 std::vector<float> turned(std::span<const float> slice, std::int64_t nx, std::int64_t ny)
@@ -130,7 +101,7 @@ void StripeFilter::remove(std::span<float> slice) const
 void StripeFilter::notch(std::span<float> slice) const
 {
     const Solid solid = solid_of_slice(slice);
-    const std::vector<std::uint8_t> inner = inner_solid(slice, nx_, ny_, solid);
+    const auto low = static_cast<float>(solid.low), high = static_cast<float>(solid.high);
     const auto terms = static_cast<std::int64_t>(share_.size());
     const auto nx = static_cast<std::size_t>(nx_), ny = static_cast<std::size_t>(ny_);
     const auto wave = [&](std::int64_t k) { return &waves_[static_cast<std::size_t>(k) * nx]; };
@@ -140,7 +111,7 @@ void StripeFilter::notch(std::span<float> slice) const
         const float* row = &slice[y * nx];
         std::fill(model.begin(), model.end(), static_cast<float>(solid.mode));
         for (int round = 0; round < 4; ++round) {
-            fill_voids(filled.data(), row, &inner[y * nx], model.data(), nx_);
+            fill_voids(filled.data(), row, model.data(), low, high, nx_);
             std::fill(model.begin(), model.end(), 0.0F);
             for (std::int64_t k = 0; k < terms; ++k) {
                 const float c = product(filled.data(), wave(k), nx_);
