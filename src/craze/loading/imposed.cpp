@@ -6,7 +6,14 @@
 
 namespace craze::loading {
 
-std::string half_rate_name(const std::string& name) { return fmt::format("{} half rate", name); }
+std::string half_rate_name(const std::string& name)
+{
+    constexpr std::string_view before = " 1/", after = " rate";
+    const auto slash = name.rfind(before);
+    if (slash == std::string::npos || !name.ends_with(after)) return fmt::format("{}{}2{}", name, before, after);
+    const auto number = slash + before.size();
+    return fmt::format("{}{}{}", name.substr(0, number), 2 * std::stol(name.substr(number)), after);
+}
 
 double strain_at_density(const std::array<Drive, 3>& drive, double eta)
 {

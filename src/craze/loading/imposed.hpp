@@ -39,13 +39,16 @@ struct Loading {
 
     double strength =
         std::numeric_limits<double>::infinity();  ///< sigma_failure, Pa; infinite: bonds never break [Eq. 24]
-    double crossings = 40.0;   ///< motion: duration of the path in wave crossings of the axial edge, > 0
-    double damping = 1.0;      ///< motion: times the reference damping
-    double stop_drop = 1.0;    ///< ends after the axial stress has fallen by this share of its peak; 1: never
-    double stop_damage = 1.0;  ///< ends when this share of the beams has broken; 1: never
+    /// Motion, wave crossings of the axial edge, > 0: duration of the whole path or, where bonds can break, of a strain
+    /// of sigma_failure / E_B.
+    double crossings = 40.0;
+    double local_damping = 0.1;  ///< motion: beta, share of the force out of balance that opposes motion, [0, 1)
+    double damping = 0.0;        ///< motion: mass damping, times the reference 0.4 (2 pi c / L)
+    double stop_drop = 1.0;      ///< ends after the axial stress has fallen by this share of its peak; 1: never
+    double stop_damage = 1.0;    ///< ends when this share of the beams has broken; 1: never
 };
 
-/// The name of the twin of a fracture loading that is run at half its rate.
+/// The name of the twin of a fracture loading that is run at half its rate: "... 1/2 rate", then "... 1/4 rate".
 std::string half_rate_name(const std::string& name);
 
 /// Strain s of the program at which a triaxial drive has compacted the box to density eta = (V0 - V)/V [Eqs. 20, 21].

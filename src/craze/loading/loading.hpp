@@ -28,7 +28,8 @@ struct Program {
     bool motion = false;
     double strength = 0.0;  ///< sigma_failure, Pa; 0: bonds never break
     double crossings = 40.0;
-    double damping = 1.0;
+    double local_damping = 0.1;
+    double damping = 0.0;
     double stop_drop = 1.0;
     double stop_damage = 1.0;
 };
@@ -75,13 +76,14 @@ struct Settings {
         bool run = false;
         std::vector<std::string> specimens{"both"};
         std::string axes = "x";
-        std::vector<double> strengths{10e9};  ///< sigma_failure, Pa [Table 4]
-        double tension = 3e-3, compression = 8e-3;
-        double crossings = 40.0;  ///< wave crossings of the specimen in the whole path
-        double damping = 1.0;
+        std::vector<double> strengths{10e9};        ///< sigma_failure, Pa [Table 4]
+        double tension = 3e-3, compression = 8e-3;  ///< largest strains for each 10 GPa of bond strength
+        double crossings = 40.0;     ///< wave crossings of the specimen per strain of sigma_failure / E_B
+        double local_damping = 0.1;  ///< beta, share of the force out of balance that opposes motion
+        double damping = 0.0;        ///< mass damping beside it, times 0.4 (2 pi c / L)
         double stop_drop = 0.5;
         std::int64_t points = 200;
-        bool check_rate = false;     ///< run again at half the rate and say how far strength moves
+        std::int64_t halvings = 0;   ///< run again at a half, a quarter, ... of the rate: how far strength moves
         std::vector<double> cycles;  ///< peaks of strain, signed; empty: no cycles
     } fracture;
     std::vector<Program> programs;

@@ -4,6 +4,7 @@
 #include "craze/core/progress.hpp"
 #include "craze/loading/restart.hpp"
 #include "craze/loading/specimen.hpp"
+#include "craze/loading/states.hpp"
 
 #include <fmt/core.h>
 
@@ -30,7 +31,7 @@ void count_closed(const mechanics::Lattice& lattice, const mechanics::State& sta
 
 class Mover {
 public:
-    Mover(const Rig& rig, const Loading& loading, const MovingOptions& options, const Watcher& watch)
+    Mover(Rig& rig, const Loading& loading, const MovingOptions& options, const Watcher& watch)
         : rig_(rig), loading_(loading), options_(options), watch_(watch)
     {
         const auto& dense = rig.dense();
@@ -41,9 +42,11 @@ public:
             length += std::abs(s - at);
             at = s;
         }
+        if (std::isfinite(loading.strength)) length = loading.strength / rig.lattice().material.E_B;
         full_rate_ = length / (loading.crossings * crossing_);
         motion_options_.geometry = options.geometry;
         motion_options_.strength = loading.strength;
+        motion_options_.local_damping = loading.local_damping;
         motion_options_.damping = loading.damping * 0.4 * 2.0 * std::numbers::pi / crossing_;
     }
 
@@ -84,9 +87,89 @@ private:
         } else {
             curve_.loading = loading_;
             progress_.share = options_.slowest;
-            motion_.emplace(rig_.lattice(), motion_options_, mechanics::rest_state(rig_.lattice()));
-            record();
+            const mechanics::State unloaded = mechanics::rest_state(rig_.lattice());
+            record_rest({unloaded, mechanics::forces(rig_.lattice(), unloaded), 0.0, 0, 0});
+            if (!std::isfinite(loading_.strength) || !start_near_the_first_break())
+                motion_.emplace(rig_.lattice(), motion_options_, unloaded);
         }
+    }
+
+    /// Largest Rankine stress of the beams over their strength.
+    double stress_ratio(const mechanics::State& state) const
+    {
+        const auto loads = born_loads(rig_.lattice(), state, rig_.fill());
+        return static_cast<double>(*std::max_element(loads.rankine.begin(), loads.rankine.end())) / loading_.strength;
+    }
+
+    /// Before a bond breaks all is elastic: states of rest lead to 0.9 of the first break, or of the first turn.
+    bool start_near_the_first_break()
+    {
+        constexpr double near = 0.9, most_growth = 3.0;
+        double turn = 0.0;
+        for (const double p : loading_.path) {
+            if (std::abs(p) < std::abs(turn) || p * turn < 0.0) break;
+            turn = p;
+        }
+        if (turn == 0.0) return false;
+        std::vector<mechanics::Equilibrium> found;
+        std::vector<double> strains;
+        double s = 0.02 * turn;
+        try {
+            mechanics::State start = mechanics::rest_state(rig_.lattice());
+            for (int trial = 0; trial < 12; ++trial) {
+                found.push_back(rig_.solve(loading_, s, std::move(start)));
+                strains.push_back(s);
+                const double ratio = stress_ratio(found.back().state);
+                if (!(ratio < 1.0)) return false;
+                const double growth = std::min(most_growth, 0.98 * near / ratio);
+                if (growth < 1.1 || std::abs(s) >= near * std::abs(turn)) break;
+                const double next = std::copysign(std::min(std::abs(s * growth), near * std::abs(turn)), turn);
+                start = found.back().state;
+                for (auto& u : start.u) u *= next / s;
+                s = next;
+            }
+        } catch (const ComputationFailed&) {
+            return false;  // a specimen that hardly holds together: move it from the start
+        }
+        for (std::size_t k = 0; k < found.size(); ++k) {
+            progress_.s = strains[k];
+            record_rest(found[k]);
+        }
+        start_moving(std::move(found.back().state), s);
+        while (std::abs(loading_.path[static_cast<std::size_t>(progress_.waypoint)]) <= std::abs(s))
+            ++progress_.waypoint;
+        return true;
+    }
+
+    void start_moving(mechanics::State state, double s)
+    {
+        // At rest the least side is held; in motion both move apart.
+        for (std::size_t a = 0; a < 3; ++a)
+            if (const auto& d = loading_.drive[a]; !d.free)
+                for (std::size_t k = a; k < state.u.size(); k += 6)
+                    state.u[k] -= 0.5 * d.factor * s * rig_.lattice().box[static_cast<int>(a)];
+        motion_.emplace(rig_.lattice(), motion_options_, state);
+        const double rate = std::copysign(full_rate_, s);
+        drive(rate);
+        std::vector<double> velocity = state.u;
+        const auto bearing = load_bearing(rig_.lattice());
+        for (std::size_t k = 0; k < velocity.size(); ++k) {
+            const std::size_t e = k / 6, a = k % 6;
+            const auto& d = loading_.drive[std::min<std::size_t>(a, 2)];
+            const bool driven = a < 3 && !d.free;
+            // Loose crumbs may turn far for little: they are swept along instead.
+            if (bearing[e])
+                velocity[k] *= rate / s;
+            else
+                velocity[k] = driven ? d.factor * rate *
+                                           (rig_.lattice().centre(static_cast<std::int32_t>(e))[static_cast<int>(a)] -
+                                            0.5 * rig_.lattice().box[static_cast<int>(a)])
+                                     : 0.0;
+        }
+        motion_->set_velocity(velocity);
+        const auto e = motion_->energies();
+        progress_.energy_before = e.elastic + e.kinetic;
+        progress_.share = 1.0;
     }
 
     /// Full rate, less while cracking runs away, after a start and before a turn.
@@ -172,6 +255,18 @@ private:
         }
     }
 
+    /// A state of rest before the motion; nothing is lost in it, so that work is what is stored.
+    void record_rest(const mechanics::Equilibrium& rest)
+    {
+        Point p = rig_.measure(loading_, progress_.s, rest.state, rest.forces);
+        p.work = p.elastic;
+        p.residual = rest.residual, p.iterations = rest.iterations;
+        curve_.points.push_back(p);
+        progress_.peak = std::max(progress_.peak, std::abs(p.stress[loading_.axis]));
+        if (watch_)
+            watch_({loading_, curve_.points.back(), std::ssize(curve_.points) - 1, rest.state, rest.forces, {}, false});
+    }
+
     void record()
     {
         const mechanics::State state = motion_->state();
@@ -180,7 +275,8 @@ private:
         count_closed(rig_.lattice(), state, forces);
         Point p = rig_.measure(loading_, progress_.s, state, forces);
         const auto e = motion_->energies();
-        p.elastic = e.elastic, p.kinetic = e.kinetic, p.damped = e.damping, p.fracture = e.fracture, p.work = e.work;
+        p.elastic = e.elastic, p.kinetic = e.kinetic, p.damped = e.damping, p.fracture = e.fracture;
+        p.work = progress_.energy_before + e.work;
         p.time = motion_->time();
         p.iterations = motion_->steps() - progress_.steps_before;
         progress_.steps_before = motion_->steps();
@@ -199,7 +295,7 @@ private:
         watch_({loading_, curve_.points.back(), std::ssize(curve_.points) - 1, state, forces, velocity, last});
     }
 
-    const Rig& rig_;
+    Rig& rig_;
     const Loading& loading_;
     const MovingOptions& options_;
     const Watcher& watch_;
@@ -214,7 +310,7 @@ private:
 
 }  // namespace
 
-Curve move(const Rig& rig, const Loading& loading, const MovingOptions& options, const Watcher& watch)
+Curve move(Rig& rig, const Loading& loading, const MovingOptions& options, const Watcher& watch)
 {
     return Mover(rig, loading, options, watch).run();
 }

@@ -19,14 +19,15 @@ struct MovingOptions {
     std::int64_t stop_after = std::numeric_limits<std::int64_t>::max();  ///< steps, then as if interrupted: for tests
 };
 
-/// Drives the sides along the path of a loading. The full rate takes `loading.crossings` times the time a bar wave
-/// sqrt(E_D / rho_D) needs along the axial edge; it is reached gradually, at each turn of the path anew, and the drive
-/// slows down by itself when cracking runs away. Damping acts on the deviation from the affine velocity, with
-/// loading.damping times 0.4 (2 pi c / L).
+/// Drives the sides along the path of a loading, at the rate that `loading.crossings` states in crossings of a bar wave
+/// sqrt(E_D / rho_D) along the axial edge. Where bonds can break, the motion starts from a state of rest at 0.9 of the
+/// strain at which the first one does, with the velocities of rest at the full rate: no wave disturbs it. Elsewhere,
+/// and after each turn of the path, the rate is reached gradually. The drive slows down when cracking runs away. Both
+/// dampings act on the deviation from the affine velocity.
 /// @throws ComputationFailed  when the motion cannot be followed
 /// @throws InvalidInput       when the restart file belongs to another loading or specimen
 /// @throws Interrupted        after writing the restart file, when asked to stop
-Curve move(const Rig& rig, const Loading& loading, const MovingOptions& options = {}, const Watcher& watch = {});
+Curve move(Rig& rig, const Loading& loading, const MovingOptions& options = {}, const Watcher& watch = {});
 
 /// UTS or UCS of a curve: the largest axial stress in the direction of its first push. [Table 4]
 Strength strength_of(const Curve& curve);

@@ -82,7 +82,7 @@ struct Strength {
     double strength = 0.0;       ///< UTS or UCS, Pa, positive [Table 4]
     double strain = 0.0;         ///< box strain at the peak
     double new_cracks = 0.0;     ///< alpha at the end less alpha at the start
-    double change = -1.0;        ///< relative change when the rate was halved; negative: not asked for
+    double change = -1.0;        ///< relative change when the rate was halved once more; negative: not asked for
 
     friend bool operator==(const Strength&, const Strength&) = default;
 };

@@ -17,7 +17,7 @@ template <class V>
 void fields(V& v, DriveProgress& p)
 {
     v("waypoint", p.waypoint), v("s", p.s), v("share", p.share), v("peak", p.peak), v("calm_energy", p.calm_energy);
-    v("steps_before", p.steps_before);
+    v("steps_before", p.steps_before), v("energy_before", p.energy_before);
 }
 
 namespace {

@@ -17,6 +17,7 @@ struct DriveProgress {
     double peak = 0.0;              ///< largest axial stress so far, Pa
     double calm_energy = 0.0;       ///< J, below which kinetic energy is never called a run-away
     std::int64_t steps_before = 0;  ///< steps at the last point
+    double energy_before = 0.0;     ///< J, held when the motion began
 };
 
 struct Restart {

@@ -76,8 +76,12 @@ void describe(Schema& schema, Program& p)
     schema.flag("motion", p.motion, "solve Newton's law (cracking) instead of equilibrium");
     schema.quantity("strength", p.strength, Dimension::pressure, {0.0, 1e15},
                     "bond strength sigma_failure; 0: never breaks");
-    schema.number("crossings", p.crossings, {0.1, 1e6}, "motion: wave crossings of the axial edge in the whole path");
-    schema.number("damping", p.damping, {0.0, 1e4}, "motion: damping, times the reference");
+    schema.number(
+        "crossings", p.crossings, {0.1, 1e6},
+        "motion: wave crossings of the axial edge in the whole path; with a strength, per strain of sigma/E_B");
+    schema.number("local_damping", p.local_damping, {0.0, 0.9},
+                  "motion: this share of the force out of balance opposes motion");
+    schema.number("damping", p.damping, {0.0, 1e4}, "motion: mass damping, times the reference");
     schema.quantity("stop_drop", p.stop_drop, Dimension::fraction, open_share,
                     "stop after this fall of stress from its peak; 1: never");
     schema.quantity("stop_damage", p.stop_damage, Dimension::fraction, open_share,
@@ -142,17 +146,20 @@ void describe(Schema& schema, Settings& s)
         schema.quantities("strengths", s.fracture.strengths, Dimension::pressure, {1.0, 1e15},
                           "bond strengths sigma_failure [Table 4]");
         schema.quantity("tension", s.fracture.tension, Dimension::fraction, strain_range,
-                        "largest tensile strain; 0: no tension");
+                        "largest tensile strain for each 10 GPa of bond strength; 0: no tension");
         schema.quantity("compression", s.fracture.compression, Dimension::fraction, strain_range,
-                        "largest compressive strain; 0: no compression");
+                        "largest compressive strain for each 10 GPa of bond strength; 0: no compression");
         schema.number("crossings", s.fracture.crossings, {0.1, 1e6},
-                      "wave crossings of the specimen in the whole path: more is slower");
-        schema.number("damping", s.fracture.damping, {0.0, 1e4}, "damping, times the reference");
+                      "wave crossings of the specimen while strain grows by sigma_failure / E_B: more is slower");
+        schema.number("local_damping", s.fracture.local_damping, {0.0, 0.9},
+                      "this share of the force out of balance on an element opposes its motion");
+        schema.number("damping", s.fracture.damping, {0.0, 1e4},
+                      "mass damping beside it, times 0.4 (2 pi c / L): drags, so strengths hang on the rate");
         schema.quantity("stop_drop", s.fracture.stop_drop, Dimension::fraction, open_share,
                         "stop after this fall of stress from its peak; 1: never");
         schema.integer("points", s.fracture.points, {2, 100000}, "points on each curve");
-        schema.flag("check_rate", s.fracture.check_rate,
-                    "run again at half the rate and report how far the strength moves");
+        schema.integer("halvings", s.fracture.halvings, {0, 8},
+                       "rate convergence: run again at a half, a quarter, ... of the rate, this many times");
         schema.quantities("cycles", s.fracture.cycles, Dimension::fraction, {-0.2, 0.2},
                           "peaks of strain, each followed by unloading [Fig. 25]; empty: no cycles");
     });
@@ -289,6 +296,7 @@ std::vector<Loading> plan(const Settings& s, const Vec3& box)
                         loading.solver = Solver::motion;
                         loading.strength = strength;
                         loading.crossings = s.fracture.crossings;
+                        loading.local_damping = s.fracture.local_damping;
                         loading.damping = s.fracture.damping;
                         loading.name =
                             fmt::format("{} {}", loading.name, format_quantity(strength, Dimension::pressure));
@@ -296,14 +304,15 @@ std::vector<Loading> plan(const Settings& s, const Vec3& box)
                     };
                     for (const double end : {s.fracture.tension, -s.fracture.compression}) {
                         if (end == 0.0) continue;
-                        auto loading = in_motion(
-                            uniaxial_test(Loading::Kind::fracture, specimen, axis_of(axis), end, s.fracture.points));
+                        auto loading = in_motion(uniaxial_test(Loading::Kind::fracture, specimen, axis_of(axis),
+                                                               end * strength / 10e9, s.fracture.points));
                         loading.stop_drop = s.fracture.stop_drop;
                         loadings.push_back(loading);
-                        if (!s.fracture.check_rate) continue;
-                        loading.crossings *= 2.0;
-                        loading.name = half_rate_name(loading.name);
-                        loadings.push_back(std::move(loading));
+                        for (std::int64_t h = 0; h < s.fracture.halvings; ++h) {
+                            loading.crossings *= 2.0;
+                            loading.name = half_rate_name(loading.name);
+                            loadings.push_back(loading);
+                        }
                     }
                     if (s.fracture.cycles.empty()) continue;
                     Loading loading =
@@ -329,6 +338,7 @@ std::vector<Loading> plan(const Settings& s, const Vec3& box)
         loading.solver = program.motion ? Solver::motion : Solver::equilibrium;
         if (program.strength > 0.0) loading.strength = program.strength;
         loading.crossings = program.crossings;
+        loading.local_damping = program.local_damping;
         loading.damping = program.damping;
         loading.stop_drop = program.stop_drop;
         loading.stop_damage = program.stop_damage;

@@ -33,11 +33,11 @@ struct ChunkSums {
 void check_options(const MotionOptions& o)
 {
     if (!(o.step_fraction > 0.0 && o.step_fraction <= 2.0 && o.damping >= 0.0 && std::isfinite(o.damping) &&
-          o.strength > 0.0))
-        throw InvalidInput(
-            fmt::format("motion: needs a step fraction above 0, a damping of at least 0 and a positive strength, got "
-                        "{:g}, {:g} 1/s and {:g} Pa",
-                        o.step_fraction, o.damping, o.strength));
+          o.local_damping >= 0.0 && o.local_damping < 1.0 && o.strength > 0.0))
+        throw InvalidInput(fmt::format(
+            "motion: needs a step fraction above 0, a damping of at least 0, a local damping in [0, 1) and a "
+            "positive strength, got {:g}, {:g} 1/s, {:g} and {:g} Pa",
+            o.step_fraction, o.damping, o.local_damping, o.strength));
 }
 
 }  // namespace
@@ -97,8 +97,10 @@ Motion::Work::Work(const Lattice& of, const MotionOptions& with, MotionState fro
     check_options(options);
     const Stiffness intact(lattice, std::vector<domain::BondKind>(lattice.i.size(), domain::BondKind::beam));
     constants.geometry = options.geometry;
-    constants.dt = options.step_fraction * 2.0 / std::sqrt(largest_eigenvalue(intact, masses));
-    constants.damping = options.damping;
+    // Local damping stiffens what turns back.
+    constants.dt =
+        options.step_fraction * 2.0 / std::sqrt((1.0 + options.local_damping) * largest_eigenvalue(intact, masses));
+    constants.damping = options.damping, constants.local_damping = options.local_damping;
 
     const auto padded = static_cast<std::size_t>(chunks() * chunk_rows);
     for (auto* v : {&rows.mass, &rows.inv_mass, &rows.moment, &rows.inv_moment, &rows.x, &rows.y, &rows.z})
@@ -219,7 +221,11 @@ void Motion::Work::step_chunk(std::int64_t chunk)
     }
     // The free step would spoil these velocities and count their damping.
     double kept[6 * chunk_rows];
-    for (std::size_t k = first; k < last; ++k) kept[k - first] = now.velocity[static_cast<std::size_t>(imposed[k])];
+    for (std::size_t k = first; k < last; ++k) {
+        const auto dof = static_cast<std::size_t>(imposed[k]);
+        kept[k - first] = now.velocity[dof];
+        force[dof] = 0.0;
+    }
     sum.step = step_rows(constants, rows, chunk * chunk_rows, (chunk + 1) * chunk_rows, force.data(),
                          now.velocity.data(), now.pose.data(), pose_next.data());
     for (std::size_t k = first; k < last; ++k) {
@@ -436,7 +442,9 @@ std::vector<double> Motion::velocity() const
                               : c == 2 ? w.constants.rate.z * w.rows.z[e]
                                        : 0.0;
         const double inverse = c < 3 ? w.rows.inv_mass[e] : w.rows.inv_moment[e];
-        out[k] = (w.now.velocity[k] + half * (w.force[k] * inverse + alpha * affine)) / (1.0 + half * alpha);
+        const double off = w.now.velocity[k] - affine, beta = w.constants.local_damping;
+        const double drag = off > 0.0 ? -beta * std::abs(w.force[k]) : off < 0.0 ? beta * std::abs(w.force[k]) : 0.0;
+        out[k] = (w.now.velocity[k] + half * ((w.force[k] + drag) * inverse + alpha * affine)) / (1.0 + half * alpha);
     }
     for (const std::int64_t dof : w.imposed)
         out[static_cast<std::size_t>(dof)] = w.now.velocity[static_cast<std::size_t>(dof)];

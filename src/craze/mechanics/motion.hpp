@@ -30,6 +30,9 @@ struct MotionOptions {
     Mass mass = Mass::uniform;
     double step_fraction = 0.85;  ///< of the critical step 2 / omega_max, above 0; stable below 1
     double damping = 0.0;         ///< alpha, 1/s: force -alpha m (v - v_affine) on each free degree of freedom
+    /// beta, [0, 1): force -beta |F| sign(v - v_affine) on each free degree of freedom, F what is out of balance there
+    /// (Cundall). Damps every mode alike, holds back no steady motion.
+    double local_damping = 0.0;
     double strength = std::numeric_limits<double>::infinity();  ///< sigma_failure, Pa: beams break at or above [Eq. 24]
     bool free_contacts = true;                                  ///< let unbonded elements touch [Eq. 5]
 };

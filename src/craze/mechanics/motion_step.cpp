@@ -35,6 +35,14 @@ CRAZE_INLINE Six kicked(const Six& v, const Six& f, const Kick& move, const Kick
             turn.from_velocity * v.f + turn.from_force * f.f};
 }
 
+CRAZE_INLINE Lanes size_of(Lanes a) { return a < 0.0 ? -a : a; }
+/// -beta |f| against the direction of v, and the power that this takes at velocity `mid`.
+CRAZE_INLINE Lanes against(const Lanes& f, const Lanes& v, double beta)
+{
+    const Lanes drag = beta * size_of(f);
+    return v > 0.0 ? -drag : (v < 0.0 ? drag : Lanes{});
+}
+
 CRAZE_INLINE void store_rows(double* p, const Six& s)
 {
     const Rows r = rows_of(s);
@@ -53,11 +61,21 @@ CRAZE_MULTIVERSION StepSums step_rows(const StepConstants& c, const Rows6& rows,
         double* v_row = velocity + 6 * e;
         const double *f_row = force + 6 * e, *p_row = pose + 8 * e;
         const Six v = gather_six(v_row, v_row + 6, v_row + 12, v_row + 18);
-        const Six f = gather_six(f_row, f_row + 6, f_row + 12, f_row + 18);
+        Six f = gather_six(f_row, f_row + 6, f_row + 12, f_row + 18);
         const Triple<Lanes> v_affine{c.rate.x * load(rows.x.data() + e), c.rate.y * load(rows.y.data() + e),
                                      c.rate.z * load(rows.z.data() + e)};
         const Kick move{spread(keep), (c.dt * after) * load(rows.inv_mass.data() + e)};
         const Kick turn{spread(keep), (c.dt * after) * load(rows.inv_moment.data() + e)};
+        Six drag{};
+        if (c.local_damping > 0.0) {
+            drag = {against(f.a, v.a - v_affine.x, c.local_damping),
+                    against(f.b, v.b - v_affine.y, c.local_damping),
+                    against(f.c, v.c - v_affine.z, c.local_damping),
+                    against(f.d, v.d, c.local_damping),
+                    against(f.e, v.e, c.local_damping),
+                    against(f.f, v.f, c.local_damping)};
+            f.a += drag.a, f.b += drag.b, f.c += drag.c, f.d += drag.d, f.e += drag.e, f.f += drag.f;
+        }
         const Six next = kicked(v, f, move, turn, spread(affine) * v_affine);
         store_rows(v_row, next);
 
@@ -65,6 +83,9 @@ CRAZE_MULTIVERSION StepSums step_rows(const StepConstants& c, const Rows6& rows,
         const Lanes speed = dot(off, off);
         largest = speed > largest ? speed : largest;
         all += speed;
+        if (c.local_damping > 0.0)
+            damping -= (0.5 * c.dt) * (drag.a * (next.a + v.a) + drag.b * (next.b + v.b) + drag.c * (next.c + v.c) +
+                                       drag.d * (next.d + v.d) + drag.e * (next.e + v.e) + drag.f * (next.f + v.f));
         if (c.damping > 0.0) {
             const Triple<Lanes> mid = spread(0.5) * (moved + Triple<Lanes>{v.a, v.b, v.c});
             const Triple<Lanes> spin = spread(0.5) * (Triple<Lanes>{next.d + v.d, next.e + v.e, next.f + v.f});

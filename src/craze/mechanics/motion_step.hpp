@@ -22,7 +22,8 @@ struct Rows6 {
 struct StepConstants {
     Geometry geometry = Geometry::corotational;
     double dt = 0.0, damping = 0.0;  ///< s, 1/s
-    Vec3 rate;                       ///< of the affine velocity, 1/s
+    double local_damping = 0.0;
+    Vec3 rate;  ///< of the affine velocity, 1/s
 };
 
 struct StepSums {

@@ -186,6 +186,8 @@ void Neighbours::search(std::span<const double> pose)
                 const auto listed_end = std::upper_bound(free.i.begin(), free.i.end(), e) - free.i.begin();
                 const auto hit = std::lower_bound(free.j.begin() + listed, free.j.begin() + listed_end, o);
                 const bool known = hit != free.j.begin() + listed_end && *hit == o;
+                // Near at rest and not listed: whoever made the domain has left their contact out.
+                if (!known && d_0 < lattice_.r[k] + lattice_.r[static_cast<std::size_t>(o)] + reach_) continue;
                 const double limit =
                     known ? d_0 - free.gap[static_cast<std::size_t>(hit - free.j.begin())]
                           : contact_distance(lattice_.r[k], lattice_.r[static_cast<std::size_t>(o)], d_0, 0.0);

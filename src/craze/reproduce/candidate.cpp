@@ -135,9 +135,8 @@ std::vector<loading::Settings> fracture_laboratories(const Study& study, const l
         auto s = quiet;
         s.fracture.strengths = {strength};
         s.output.last_state = strength == 30e9;  // [Fig. 24]
-        // The strain of failure grows with the strength of the bonds, and so must the path.
-        s.fracture.tension = study.tension * strength / 10e9;
-        s.fracture.compression = study.compression * strength / 10e9;
+        s.fracture.tension = study.tension;
+        s.fracture.compression = study.compression;
         all.push_back(s);
     }
     if (!study.cycles.empty() && !study.strengths.empty()) {
@@ -145,7 +144,6 @@ std::vector<loading::Settings> fracture_laboratories(const Study& study, const l
         s.fracture.strengths = {study.strengths.front()};
         s.fracture.tension = s.fracture.compression = 0.0;
         s.fracture.cycles = study.cycles;
-        s.fracture.crossings *= static_cast<double>(study.cycles.size());
         all.push_back(s);
     }
     return all;

@@ -28,8 +28,8 @@ struct Study {
     std::vector<double> strengths;      ///< sigma_failure, Pa, along x [Table 4]
     double tension = 1.5e-3;            ///< strain at the end of a tension with bonds of 10 GPa; others in proportion
     double compression = 4.5e-3;        ///< and of a compression
-    double crossings = 40.0;            ///< duration of fracture loadings, wave crossings
-    double damping = 1.0;
+    double crossings = 40.0;            ///< of fracture loadings: wave crossings per strain of sigma_failure / E_B
+    double damping = 0.0;               ///< mass damping beside the local one
     std::vector<double>
         cycles;  ///< peaks of strain of a cycled loading at the first strength; none: no cycles [Fig. 25]
     /// Let unbonded neighbours push [Eq. 5]. Our reading: off in states of rest. The paper's dense and porous samples

@@ -29,8 +29,8 @@ struct Settings {
     std::vector<double> thicknesses{2e-9, 10e-9, 20e-9, 40e-9, 60e-9, 100e-9};  ///< constant, cracks only [Fig. 22]
     std::vector<double> strengths{10e9, 20e9, 30e9, 40e9, 50e9};                ///< sigma_failure, Pa [Table 4]
     double tension = 1.5e-3, compression = 4.5e-3;                              ///< see Study
-    double crossings = 40.0;  ///< wave crossings of a fracture loading
-    double damping = 1.0;
+    double crossings = 40.0;  ///< of a fracture loading: wave crossings per strain of sigma_failure / E_B
+    double damping = 0.0;     ///< mass damping beside the local one
     std::vector<double> cycles{-1e-3, -2e-3, -3e-3};          ///< peaks of strain, first seed only [Fig. 25]
     bool near_contacts = false;                               ///< see Study
     std::vector<std::string> fitted = FitSettings{}.targets;  ///< which numbers the recipe was fitted to

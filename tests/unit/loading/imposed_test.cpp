@@ -32,7 +32,7 @@ TEST(Plan, MakesTheTwelveModuliAndAllCurvesOfOneSettings)
     Settings s;
     s.fracture.run = true;
     s.fracture.strengths = {10e9, 20e9};
-    s.fracture.check_rate = true;
+    s.fracture.halvings = 1;
     s.fracture.cycles = {1e-3, 2e-3};
     s.programs.resize(1);
     const auto loadings = plan(s, {17.6e-6, 13.2e-6, 21.2e-6});

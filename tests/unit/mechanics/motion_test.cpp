@@ -275,6 +275,7 @@ TEST(Motion, RefusesNonsenseAndSaysWhy)
     const Lattice lattice = cracked_lattice(100);
     EXPECT_THROW(Motion(lattice, {.step_fraction = -1.0}, rest_state(lattice)), InvalidInput);
     EXPECT_THROW(Motion(lattice, {.damping = NAN}, rest_state(lattice)), InvalidInput);
+    EXPECT_THROW(Motion(lattice, {.local_damping = 1.0}, rest_state(lattice)), InvalidInput);
     State bad = rest_state(lattice);
     bad.u[7] = NAN;
     EXPECT_THROW(Motion(lattice, {}, bad), InvalidInput);
@@ -283,6 +284,58 @@ TEST(Motion, RefusesNonsenseAndSaysWhy)
     Motion fast(lattice, {}, rest_state(lattice));
     fast.drive(driven_faces(lattice, 1e9));
     EXPECT_THROW(fast.advance(100), ComputationFailed);
+}
+
+/// One beam along x, its first end held.
+Lattice one_beam()
+{
+    return make_lattice(
+        support::bonded({4e-7, 4e-7, 8e-7}, {{2e-7, 2e-7, 2e-7}, {6e-7, 2e-7, 2e-7}}, {2e-7, 2e-7}, {{0, 1}}), {});
+}
+
+TEST_P(InEitherGeometry, LocalDampingTakesTheSameShareOfEverySwing)
+{
+    const Lattice lattice = one_beam();
+    Constraints held;
+    for (int c = 0; c < 6; ++c) held.impose(0, c, 0.0);
+    for (const double beta : {0.0, 0.1, 0.5}) {
+        State start = rest_state(lattice);
+        const double first = 1e-6 * lattice.length[0];
+        start.u[6] = first;
+        Motion motion(lattice, {.geometry = GetParam(), .step_fraction = 0.02, .local_damping = beta}, start);
+        motion.drive(held);
+        const double energy = motion.energies().elastic;
+        // From x to -x sqrt((1 - beta) / (1 + beta)): the force pulls with (1 - beta) k inwards, (1 + beta) k outwards.
+        double expected = first;
+        for (int swing = 0; swing < 4; ++swing) {
+            double farthest = 0.0;
+            const double side = swing % 2 == 0 ? -1.0 : 1.0;
+            bool out = true;
+            for (int k = 0; k < 1000 && out; ++k) {
+                motion.advance(1);
+                const double x = side * motion.state().u[6];
+                out = x > farthest || x <= 0.0;
+                farthest = std::max(farthest, x);
+            }
+            expected *= std::sqrt((1.0 - beta) / (1.0 + beta));
+            EXPECT_NEAR(farthest / expected, 1.0, 0.02) << beta << " swing " << swing;
+        }
+        const auto e = motion.energies();
+        EXPECT_NEAR(e.elastic + e.kinetic + e.damping, energy, 2e-3 * energy) << beta;
+        EXPECT_NEAR(e.elastic + e.kinetic, energy * std::pow((1.0 - beta) / (1.0 + beta), 4.0), 0.03 * energy) << beta;
+    }
+}
+
+TEST_P(InEitherGeometry, LocalDampingLetsSteadyMotionBe)
+{
+    const Lattice lattice = one_beam();
+    Motion motion(lattice, {.geometry = GetParam(), .local_damping = 0.5}, rest_state(lattice));
+    std::vector<double> velocity(12, 0.0);
+    for (const std::size_t e : {0U, 6U}) velocity[e] = 3.0, velocity[e + 1] = -4.0;
+    motion.set_velocity(velocity);
+    motion.advance(100);
+    const auto now = motion.velocity();
+    for (std::size_t k = 0; k < 12; ++k) EXPECT_NEAR(now[k], velocity[k], 1e-9);
 }
 
 }  // namespace
