@@ -4,7 +4,34 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace craze::loading {
+
+void check(const Loading& loading)
+{
+    const auto refuse = [&](const std::string& why) {
+        throw InvalidInput(fmt::format("loading \"{}\": {}", loading.name, why));
+    };
+    double most_factor = 0.0;
+    for (const auto& d : loading.drive) {
+        if (d.free) continue;
+        if (!std::isfinite(d.factor)) refuse("a factor of its drive is not a number");
+        most_factor = std::max(most_factor, std::abs(d.factor));
+    }
+    if (most_factor == 0.0) refuse("no side moves; drive at least one axis");
+    if (loading.axis < 0 || loading.axis > 2) refuse(fmt::format("axis {}; needed 0, 1 or 2", loading.axis));
+    if (loading.path.empty()) refuse("its path has no point; needed at least one strain");
+    for (const double s : loading.path)
+        if (!(std::abs(s) * most_factor <= 0.5))
+            refuse(fmt::format(
+                "a strain of {:.4g} on its path; needed finite strains up to 0.5, ceramics break below 0.02",
+                s * most_factor));
+    if (!(loading.crossings > 0.0 && std::isfinite(loading.crossings) && loading.strength > 0.0))
+        refuse(fmt::format("{} wave crossings and a bond strength of {:.4g} Pa; both need to be above zero",
+                           loading.crossings, loading.strength));
+}
 
 std::string half_rate_name(const std::string& name)
 {

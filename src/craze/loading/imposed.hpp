@@ -48,6 +48,11 @@ struct Loading {
     double stop_damage = 1.0;    ///< ends when this share of the beams has broken; 1: never
 };
 
+/// @throws InvalidInput  when nothing is driven, a number is not finite or an edge would lose or gain half of its
+/// length; says
+///                       which loading and what would do
+void check(const Loading& loading);
+
 /// The name of the twin of a fracture loading that is run at half its rate: "... 1/2 rate", then "... 1/4 rate".
 std::string half_rate_name(const std::string& name);
 

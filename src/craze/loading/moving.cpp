@@ -168,7 +168,7 @@ private:
         }
         motion_->set_velocity(velocity);
         const auto e = motion_->energies();
-        progress_.energy_before = e.elastic + e.kinetic;
+        progress_.energy_before = e.elastic + e.kinetic - e.work;  // that of the half step before
         progress_.share = 1.0;
     }
 
@@ -312,6 +312,7 @@ private:
 
 Curve move(Rig& rig, const Loading& loading, const MovingOptions& options, const Watcher& watch)
 {
+    check(loading);
     return Mover(rig, loading, options, watch).run();
 }
 

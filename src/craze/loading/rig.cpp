@@ -111,6 +111,7 @@ mechanics::Equilibrium Rig::solve(const Loading& loading, double s, mechanics::S
 
 Curve Rig::rest(const Loading& loading, const Watcher& watch)
 {
+    check(loading);
     const Stopwatch watch_time;
     Curve curve;
     curve.loading = loading;

@@ -130,7 +130,7 @@ TEST_F(Fracture, CyclesFollowTheMonotonicEnvelope)  // [Fig. 25]
     Loading cycles = along_x(1.0e-3, 10e9, 80.0, 1);
     cycles.path.clear();
     cycles.stop_drop = 1.0;
-    const std::vector<double> peaks{4e-4, 5.5e-4};
+    const std::vector<double> peaks{4e-4, 5.6e-4};
     for (const double peak : peaks) {
         for (int k = 1; k <= 11; ++k) cycles.path.push_back(peak * k / 11.0);
         for (int k = 10; k >= 0; --k) cycles.path.push_back(peak * k / 11.0);
