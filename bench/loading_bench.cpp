@@ -149,7 +149,8 @@ void triaxial(benchmark::State& state, const char* specimen)
 BENCHMARK_CAPTURE(triaxial, dense, "dense")->Unit(benchmark::kSecond)->Iterations(1)->UseRealTime();
 BENCHMARK_CAPTURE(triaxial, both, "both")->Unit(benchmark::kSecond)->Iterations(1)->UseRealTime();
 
-/// Along x at 10 GPa; the second argument of the name is the number of wave crossings per strain of sigma_failure / E_B.
+/// Along x at 10 GPa; the second argument of the name is the number of wave crossings per strain of sigma_failure /
+/// E_B.
 void fracture(benchmark::State& state)
 {
     const bool tension = state.range(0) > 0;

@@ -322,7 +322,11 @@ std::vector<Loading> plan(const Settings& s, const Vec3& box)
                     const auto legs = static_cast<std::int64_t>(turns.size());
                     loading.path = through(turns, std::max<std::int64_t>(10, s.fracture.points / legs));
                     loading.name = fmt::format("{} cycles {}", specimen_name(loading.specimen), axis);
-                    loadings.push_back(in_motion(std::move(loading)));
+                    loading = in_motion(std::move(loading));
+                    // Turns make waves that would ring on under local damping alone.
+                    loading.crossings *= 4.0;
+                    loading.damping = std::max(loading.damping, 1.0);
+                    loadings.push_back(std::move(loading));
                 }
     for (const auto& program : s.programs) {
         Loading loading;

@@ -57,19 +57,6 @@ TEST(Hopeless, AFloatingSpecimenThatReachesNoWall)
     expect_advice<ComputationFailed>([&] { Rig(d, {}, {}, {}); }, "x");
 }
 
-TEST(Hopeless, OneCutThroughBearsNothingAtRestAndInMotion)
-{
-    const auto& dense = packing();
-    const support::Penny wall{0.5 * dense.box, {1, 0, 0}, 1.0, 50e-9};
-    const auto halves = domain::with_defects(support::with_pennies(dense, {wall}), parse_specimen("cracks"));
-    Rig rig(halves, {}, {}, {});
-    auto l = along_x(1e-3);
-    EXPECT_LT(std::abs(rig.rest(l).points.back().stress.x), 1e-3 * 223e9 * 1e-3);
-    l.strength = 10e9;
-    l.crossings = 5.0;
-    EXPECT_LT(std::abs(move(rig, l).points.back().stress.x), 2e-2 * 223e9 * 1e-3);
-}
-
 TEST(Hopeless, StrainsBeyondReasonAndNumbersThatAreNone)
 {
     Rig rig(packing(), {}, {}, {});

@@ -88,7 +88,7 @@ TEST_F(Moving, StartsFromRestShortOfTheFirstBreak)
     // No wave: the same stiffness, hardly any motion, both sides bear the same.
     EXPECT_NEAR(moving.stress.x / moving.strain.x / (rest.stress.x / rest.strain.x), 1.0, 0.01);
     EXPECT_LT(moving.imbalance, 0.01);
-    EXPECT_LT(moving.kinetic, 1e-3 * moving.elastic);
+    EXPECT_LT(moving.kinetic, 2e-2 * moving.elastic) << "that of the drive itself";
 }
 
 TEST_F(Moving, NotesEachBrokenBondWithItsStrain)
@@ -166,8 +166,9 @@ TEST_F(Moving, GivesTheSameBitsOnAnyNumberOfThreads)
 
 TEST_F(Moving, UnloadedAfterCyclesKeepsNoStrainButLosesStiffness)  // [Fig. 25]
 {
-    Loading l = tension(1e-3, 1, 60.0);
+    Loading l = tension(1e-3, 1, 100.0);
     l.kind = Loading::Kind::cycles;
+    l.damping = 1.0;  // against the waves of the turns
     l.path.clear();
     for (const double peak : {4e-4, 4.5e-4})
         for (int k = 1; k <= 20; ++k) l.path.push_back(k <= 10 ? peak * k / 10.0 : peak * (20 - k) / 10.0);
