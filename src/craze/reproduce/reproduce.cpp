@@ -110,7 +110,8 @@ void describe(Schema& schema, Settings& s)
     schema.quantity("tension", s.tension, Dimension::fraction, strain,
                     "strain at the end of a tension with bonds of 10 GPa; others in proportion");
     schema.quantity("compression", s.compression, Dimension::fraction, strain, "the same in compression");
-    schema.number("crossings", s.crossings, {1, 1e4}, "fracture loadings: wave crossings per strain of sigma_failure / E_B");
+    schema.number("crossings", s.crossings, {1, 1e4},
+                  "fracture loadings: wave crossings per strain of sigma_failure / E_B");
     schema.number("damping", s.damping, {0, 1e3}, "mass damping of fracture loadings, times the reference");
     schema.quantities("cycles", s.cycles, Dimension::fraction, {-0.2, 0.2},
                       "peaks of strain at the first strength, first seed only; none: no cycles");
