@@ -1,5 +1,6 @@
 #include "craze/core/json.hpp"
 #include "craze/domain/room.hpp"
+#include "craze/io/volume_file.hpp"
 #include "craze/loading/calibration.hpp"
 #include "support/command.hpp"
 
@@ -101,6 +102,42 @@ TEST_F(CommandLine, TheManualInTheDocsIsTheProgramsOwn)
 {
     EXPECT_EQ(run_craze("settings").out, content_of(fs::path(CRAZE_SOURCE_DIR) / "docs" / "settings.md"))
         << "run: craze settings > docs/settings.md";
+}
+
+// What the README says of the demo, on a smaller coating with the demo's voxels and the microscope's default faults.
+TEST_F(CommandLine, RecoversTheTruthOfASyntheticCoating)
+{
+    write("coating.toml", R"(
+[synth]
+shape = [144, 144, 144]
+voxel_size = "35.4 nm"
+
+[microstructure]
+R_C = "5.65 px"
+R_E = "3 px"
+)");
+    for (const char* room : {"synth ", "images ", "microstructure "}) {
+        const auto ran = run_craze(room + path("coating.toml") + " --out " + path("out"));
+        ASSERT_EQ(ran.code, 0) << ran.out;
+    }
+    const auto truth = io::read_volume<std::uint8_t>(folder / "out" / "synth" / "truth.mhd");
+    const auto found = io::read_volume<std::uint8_t>(folder / "out" / "microstructure" / "phase.mhd");
+    const auto crop = Json::parse(content_of(folder / "out" / "images" / "summary.json"))
+                          .at("alignment")
+                          .at("common_crop")
+                          .get<std::vector<std::int64_t>>();
+    constexpr std::uint8_t crack = 128, matter = 255;
+    std::int64_t truly_void = 0, found_void = 0, both_void = 0, truly_crack = 0, crack_found = 0;
+    for (std::int64_t z = 0; z < found.shape().nz; ++z)
+        for (std::int64_t y = 0; y < found.shape().ny; ++y)
+            for (std::int64_t x = 0; x < found.shape().nx; ++x) {
+                const std::uint8_t t = truth(x + crop[0], y + crop[2], z), f = found(x, y, z);
+                truly_void += t != matter, found_void += f != matter, both_void += t != matter && f != matter;
+                truly_crack += t == crack, crack_found += t == crack && f != matter;
+            }
+    EXPECT_GE(2.0 * static_cast<double>(both_void), 0.97 * static_cast<double>(truly_void + found_void));
+    EXPECT_GE(static_cast<double>(crack_found), 0.95 * static_cast<double>(truly_crack));
+    EXPECT_GT(truly_crack, 10000);
 }
 
 // Times, memory, paths and the thread count differ between runs; all else must not.
