@@ -92,6 +92,10 @@ struct Frame {
     bool periodic;
     float stiffening;
 };
+Frame frame_of(const Vec3& unit, bool periodic, float stiffening)
+{
+    return {{static_cast<float>(unit.x), static_cast<float>(unit.y), static_cast<float>(unit.z)}, periodic, stiffening};
+}
 
 struct Partial {
     double power, force2, speed2, overlap, most, contacts;
@@ -340,9 +344,7 @@ void Spheres::list_neighbours(double skin)
             sorted.r[m] = s.r;
         }
     });
-    const Frame frame{{static_cast<float>(unit_.x), static_cast<float>(unit_.y), static_cast<float>(unit_.z)},
-                      periodic_,
-                      stiffening_};
+    const Frame frame = frame_of(unit_, periodic_, stiffening_);
     const auto nobody = static_cast<std::int32_t>(slices_ * lanes);
 
     parallel_tasks(std::ssize(near_), [&](std::int64_t b) {
@@ -406,9 +408,7 @@ void Spheres::list_neighbours(double skin)
 Spheres::Sums Spheres::push()
 {
     std::vector<Partial> partial(near_.size());
-    const Frame frame{{static_cast<float>(unit_.x), static_cast<float>(unit_.y), static_cast<float>(unit_.z)},
-                      periodic_,
-                      stiffening_};
+    const Frame frame = frame_of(unit_, periodic_, stiffening_);
     parallel_ranges(std::ssize(near_), [&](std::int64_t b_begin, std::int64_t b_end) {
         for (std::int64_t b = b_begin; b < b_end; ++b)
             partial[at(b)] =
@@ -430,9 +430,7 @@ Spheres::Sums Spheres::push()
 double Spheres::advance(double keep, double steer, double dt)
 {
     std::vector<double> far2(near_.size());
-    const Frame frame{{static_cast<float>(unit_.x), static_cast<float>(unit_.y), static_cast<float>(unit_.z)},
-                      periodic_,
-                      stiffening_};
+    const Frame frame = frame_of(unit_, periodic_, stiffening_);
     parallel_ranges(std::ssize(near_), [&](std::int64_t b_begin, std::int64_t b_end) {
         for (std::int64_t b = b_begin; b < b_end; ++b)
             far2[at(b)] = advance_block(at_.data(), velocity_.data(), force_.data(), listed_at_.data(), b * block,
