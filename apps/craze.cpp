@@ -14,12 +14,14 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cstdlib>
 #include <exception>
 #include <functional>
 #include <new>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -43,52 +45,69 @@ struct Common {
     int threads = 0;
     bool quiet = false;
 
-    void add_to(CLI::App& verb)
+    void add_to(CLI::App& verb, const std::string& default_out, const std::string& example)
     {
-        verb.add_option("SETTINGS", settings, "settings file (TOML); 'craze init' writes one")->required();
-        verb.add_option("--out", out, "folder for the results")->default_str("out/<name of the settings file>");
-        verb.add_option("--set", set,
-                        "override one setting: KEY=VALUE, such as images.denoise.search=15; may be repeated")
+        verb.add_option("--out", out, "folder for the results")->default_str(default_out);
+        verb.add_option("--set", set, "override one setting: KEY=VALUE, such as " + example + "; may be repeated")
             ->allow_extra_args(false);
         verb.add_option("--threads", threads, "threads to use; 0 means all cores")->check(CLI::Range(0, 4096));
         verb.add_flag("--quiet", quiet, "print nothing but results and errors");
     }
 
-    pipeline::Settings read() const
+protected:
+    void apply() const
     {
         set_threads(threads);
         set_verbosity(quiet ? Verbosity::quiet : Verbosity::normal);
+    }
+};
+
+struct Chain : Common {
+    void add_to(CLI::App& verb)
+    {
+        verb.add_option("SETTINGS", settings, "settings file (TOML); 'craze init' writes one")->required();
+        Common::add_to(verb, "out/<name of the settings file>", "images.denoise.search=15");
+    }
+
+    pipeline::Settings read() const
+    {
+        apply();
         return pipeline::read({settings, set});
     }
 
     fs::path folder() const { return out.empty() ? fs::path("out") / fs::path(settings).stem() : fs::path(out); }
 };
 
-/// What `reproduce` and `fit-coating` share: a recipe that may be left out.
-struct Recipe {
-    std::string settings, out;
-    std::vector<std::string> set;
-    int threads = 0;
-    bool quiet = false;
-
+/// What `reproduce` and `fit-coating` read: a recipe that may be left out.
+struct Recipe : Common {
     void add_to(CLI::App& verb)
     {
         verb.add_option("RECIPE", settings,
                         "settings file with [synth], [reproduce], [fit]; the built-in recipe when left out");
-        verb.add_option("--out", out, "folder for the results")->default_str("out/<verb>");
-        verb.add_option("--set", set, "override one setting: KEY=VALUE, such as reproduce.seeds=[1]; may be repeated")
-            ->allow_extra_args(false);
-        verb.add_option("--threads", threads, "threads to use; 0 means all cores")->check(CLI::Range(0, 4096));
-        verb.add_flag("--quiet", quiet, "print nothing but results and errors");
+        Common::add_to(verb, "out/<verb>", "reproduce.seeds=[1]");
     }
 
     reproduce::AllSettings read() const
     {
-        set_threads(threads);
-        set_verbosity(quiet ? Verbosity::quiet : Verbosity::normal);
+        apply();
         return reproduce::read({settings, set});
     }
 };
+
+/// Refuses a first word that is no verb, naming the nearest one.
+void check_verb(const CLI::App& app, int argc, char** argv)
+{
+    if (argc < 2 || argv[1][0] == '-') return;
+    std::vector<std::string> verbs;
+    for (const auto* verb : app.get_subcommands([](const CLI::App*) { return true; }))
+        verbs.push_back(verb->get_name());
+    const std::string word = argv[1];
+    if (std::ranges::find(verbs, word) != verbs.end()) return;
+    const std::string near = nearest_name(word, verbs.data(), verbs.data() + verbs.size());
+    throw InvalidInput(
+        fmt::format("{}: no such verb; {}", word,
+                    near.empty() ? "'craze --help' lists them" : fmt::format("did you mean \"{}\"?", near)));
+}
 
 // A packing made elsewhere, named on the command line; each option stands for a key of [domain.import].
 struct Import {
@@ -152,7 +171,7 @@ int run(int argc, char** argv)
     app.require_subcommand(1);
     std::function<void()> work;
 
-    Common common;
+    Chain common;
     bool resume = false, sweep = false;
     auto* run_verb = app.add_subcommand("run", "the whole chain, from images to report");
     common.add_to(*run_verb);
@@ -242,6 +261,7 @@ int run(int argc, char** argv)
     manual->callback(
         [&] { work = [] { fmt::print("{}{}", pipeline::settings_reference(), reproduce::settings_reference()); }; });
 
+    check_verb(app, argc, argv);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

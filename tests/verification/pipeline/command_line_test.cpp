@@ -80,7 +80,8 @@ TEST_F(CommandLine, RefusesWrongInputBeforeAnyWorkStarts)
                    "--set mesh.alpa: unknown key; did you mean \"alpha\"?");
     expect_refused("run", "SETTINGS is required");
     expect_refused("mesh " + path("small.toml"), "needs the results of microstructure");
-    EXPECT_EQ(run_craze("rum").code, 2);
+    expect_refused("rum", "rum: no such verb; did you mean \"run\"?");
+    expect_refused("analyse " + path("small.toml"), "analyse: no such verb; 'craze --help' lists them");
     write("recipe.toml", "[fit]\nparameters = [\"densty\"]\n");
     expect_refused("fit-coating " + path("recipe.toml"), "did you mean \"density\"?");
     expect_refused("reproduce --size big", "big not in");
