@@ -50,7 +50,7 @@ struct CoarseSpace::Work {
     Aggregates groups;
     std::vector<Vec3> arm;           ///< from the centre of its aggregate to each element, over `unit`
     std::vector<std::uint8_t> held;  ///< bit c: number c of the element is imposed
-    double unit = 1.0;               ///< length that makes rotations displacements, m
+    double unit = 1.0, scale = 1.0;  ///< length that makes rotations displacements, m; EA / unit, N/m
     Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::AMDOrdering<int>> factor;
     mutable Eigen::VectorXd load;
 
@@ -99,13 +99,14 @@ CoarseSpace::CoarseSpace(CoarseSpace&&) noexcept = default;
 CoarseSpace& CoarseSpace::operator=(CoarseSpace&&) noexcept = default;
 std::int32_t CoarseSpace::aggregates() const { return work_->groups.count(); }
 
-void CoarseSpace::set_up(const Lattice& lattice, const Stiffness& stiffness, std::span<const std::int64_t> imposed)
+void CoarseSpace::set_up(const Lattice& lattice, const Stiffness& stiffness, std::span<const std::int64_t> imposed,
+                         Aggregates aggregates)
 {
     Work& w = *work_;
     const auto n = lattice.r.size();
-    // Aggregates grow with the lattice so that the factor stays small beside the iterations.
-    w.groups = grow_aggregates(lattice, stiffness.beams(), std::max<std::int64_t>(60, lattice.elements() / 280));
-    w.unit = 4.0 * lattice.mean_radius;
+    w.groups = std::move(aggregates);
+    w.unit = lattice.mean_radius;
+    w.scale = stiffness.section().EA / w.unit;
     w.held.assign(n, 0);
     for (const std::int64_t dof : imposed)
         w.held[static_cast<std::size_t>(dof / 6)] |= static_cast<std::uint8_t>(1U << (dof % 6));
@@ -172,48 +173,16 @@ void CoarseSpace::set_up(const Lattice& lattice, const Stiffness& stiffness, std
     w.load.resize(groups > 0 && trace > 0.0 && w.factor.info() == Eigen::Success ? 6 * groups : 0);
 }
 
-void CoarseSpace::add(std::span<const double> r, std::span<double> z) const
+void CoarseSpace::solve(std::span<float> load) const
 {
     const Work& w = *work_;
-    if (w.load.size() == 0) return;
-    parallel_ranges(w.groups.count(), [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t g = begin; g < end; ++g) {
-            double sum[6] = {};
-            for (auto m = w.groups.first[static_cast<std::size_t>(g)];
-                 m < w.groups.first[static_cast<std::size_t>(g) + 1]; ++m) {
-                const auto e = static_cast<std::size_t>(w.groups.elements[static_cast<std::size_t>(m)]);
-                const double* f = r.data() + 6 * e;  // zero where imposed
-                const Vec3& a = w.arm[e];
-                sum[0] += f[0], sum[1] += f[1], sum[2] += f[2];
-                sum[3] += a.y * f[2] - a.z * f[1] + f[3] / w.unit;
-                sum[4] += a.z * f[0] - a.x * f[2] + f[4] / w.unit;
-                sum[5] += a.x * f[1] - a.y * f[0] + f[5] / w.unit;
-            }
-            for (int c = 0; c < 6; ++c) w.load[6 * g + c] = sum[c];
-        }
-    });
+    if (w.load.size() != std::ssize(load)) {
+        std::fill(load.begin(), load.end(), 0.0F);
+        return;
+    }
+    w.load = Eigen::Map<const Eigen::VectorXf>(load.data(), std::ssize(load)).cast<double>();
     w.load = w.factor.solve(w.load).eval();
-    parallel_ranges(w.groups.count(), [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t g = begin; g < end; ++g) {
-            const double* y = w.load.data() + 6 * g;
-            for (auto m = w.groups.first[static_cast<std::size_t>(g)];
-                 m < w.groups.first[static_cast<std::size_t>(g) + 1]; ++m) {
-                const auto e = static_cast<std::size_t>(w.groups.elements[static_cast<std::size_t>(m)]);
-                const Vec3& a = w.arm[e];
-                double* to = z.data() + 6 * e;
-                const double u[6] = {y[0] + y[4] * a.z - y[5] * a.y,
-                                     y[1] + y[5] * a.x - y[3] * a.z,
-                                     y[2] + y[3] * a.y - y[4] * a.x,
-                                     y[3] / w.unit,
-                                     y[4] / w.unit,
-                                     y[5] / w.unit};
-                if (w.held[e] == 0)
-                    for (int c = 0; c < 6; ++c) to[c] += u[c];
-                else
-                    for (int c = 0; c < 6; ++c) to[c] += w.held[e] >> c & 1 ? 0.0 : u[c];
-            }
-        }
-    });
+    Eigen::Map<Eigen::VectorXf>(load.data(), std::ssize(load)) = (w.scale * w.load).cast<float>();
 }
 
 }  // namespace craze::mechanics

@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include "craze/mechanics/aggregates.hpp"
 #include "craze/mechanics/lattice.hpp"
 #include "craze/mechanics/stiffness.hpp"
 
@@ -12,19 +13,6 @@
 
 namespace craze::mechanics {
 
-/// Elements grouped through intact beams. Elements without beams belong to none.
-struct Aggregates {
-    std::vector<std::int32_t> of;        ///< aggregate of each element, -1 for none, shape (n,)
-    std::vector<std::int32_t> elements;  ///< grouped, ascending within each group
-    std::vector<std::int32_t> first;     ///< elements of group a are [first[a], first[a + 1])
-    std::vector<Vec3> centre;            ///< m
-
-    std::int32_t count() const { return static_cast<std::int32_t>(centre.size()); }
-};
-/// Grows groups of about `size` elements from beam to beam; pieces that stay much smaller join a neighbour if they have
-/// one.
-Aggregates grow_aggregates(const Lattice& lattice, const Beams& beams, std::int64_t size);
-
 /// The Galerkin projection of the stiffness on six rigid motions per aggregate, factorised.
 class CoarseSpace {
 public:
@@ -34,9 +22,10 @@ public:
     CoarseSpace& operator=(CoarseSpace&&) noexcept;
 
     /// @param imposed  degrees of freedom that do not move, ascending
-    void set_up(const Lattice& lattice, const Stiffness& stiffness, std::span<const std::int64_t> imposed);
-    /// z += P (P^T K P)^-1 P^T r; zero at imposed degrees of freedom.
-    void add(std::span<const double> r, std::span<double> z) const;
+    void set_up(const Lattice& lattice, const Stiffness& stiffness, std::span<const std::int64_t> imposed,
+                Aggregates groups);
+    /// Six loads per aggregate, force (EA) and moment about its centre (EA R), become displacement (R) and rotation.
+    void solve(std::span<float> load) const;
     std::int32_t aggregates() const;
 
 private:

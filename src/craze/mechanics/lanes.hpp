@@ -38,14 +38,6 @@ CRAZE_INLINE Pair load_pair(const double* p)
     std::memcpy(&v, p, sizeof v);
     return v;
 }
-/// Single precision in memory.
-CRAZE_INLINE Lanes load_single(const float* p)
-{
-    float __attribute__((vector_size(16))) v;
-    std::memcpy(&v, p, sizeof v);
-    return __builtin_convertvector(v, Lanes);
-}
-CRAZE_INLINE Pair load_single_pair(const float* p) { return Pair{p[0], p[1]}; }
 CRAZE_INLINE void store(double* p, Lanes v) { std::memcpy(p, &v, sizeof v); }
 CRAZE_INLINE void store(double* p, Pair v) { std::memcpy(p, &v, sizeof v); }
 CRAZE_INLINE Lanes spread(double a) { return Lanes{a, a, a, a}; }
@@ -123,6 +115,37 @@ CRAZE_INLINE void add_row(double* p, const Rows& r, int k)
 {
     store(p, load(p) + r.head[k]);
     store(p + 4, load_pair(p + 4) + r.tail[k]);
+}
+
+/// Eight single numbers: a row of an element, or one number of eight bonds.
+using Floats = float __attribute__((vector_size(32)));
+inline constexpr int floats = 8;
+
+CRAZE_INLINE Floats load(const float* p)
+{
+    Floats v;
+    std::memcpy(&v, p, sizeof v);
+    return v;
+}
+CRAZE_INLINE void store(float* p, Floats v) { std::memcpy(p, &v, sizeof v); }
+
+/// Rows become columns.
+CRAZE_INLINE void transpose(Floats (&a)[floats])
+{
+    Floats t[floats], s[floats];
+    for (int k = 0; k < 4; ++k) {
+        t[2 * k] = __builtin_shufflevector(a[2 * k], a[2 * k + 1], 0, 8, 1, 9, 4, 12, 5, 13);
+        t[2 * k + 1] = __builtin_shufflevector(a[2 * k], a[2 * k + 1], 2, 10, 3, 11, 6, 14, 7, 15);
+    }
+    for (int half = 0; half < 8; half += 4)
+        for (int k = 0; k < 2; ++k) {
+            s[half + 2 * k] = __builtin_shufflevector(t[half + k], t[half + 2 + k], 0, 1, 8, 9, 4, 5, 12, 13);
+            s[half + 2 * k + 1] = __builtin_shufflevector(t[half + k], t[half + 2 + k], 2, 3, 10, 11, 6, 7, 14, 15);
+        }
+    for (int k = 0; k < 4; ++k) {
+        a[k] = __builtin_shufflevector(s[k], s[4 + k], 0, 1, 2, 3, 8, 9, 10, 11);
+        a[4 + k] = __builtin_shufflevector(s[k], s[4 + k], 4, 5, 6, 7, 12, 13, 14, 15);
+    }
 }
 
 }  // namespace craze::mechanics

@@ -85,21 +85,22 @@ struct BeamLoads {
 };
 
 /// Small displacements: frame t and length L_0 of the beam at rest. Linear in its arguments.
+/// @param s       EA, EI and GJ in the precision of Real
 /// @param inv_L0  1 / L_0, 1/m     @param du  u_2 - u_1, m     @param w_1, w_2  rotations of the ends, rad
-template <class Real>
-CRAZE_INLINE BeamLoads<Real> small_displacement_beam(const BeamSection& s, Real inv_L0, const Triple<Real>& t,
+template <class Real, class Section>
+CRAZE_INLINE BeamLoads<Real> small_displacement_beam(const Section& s, Real inv_L0, const Triple<Real>& t,
                                                      const Triple<Real>& du, const Triple<Real>& w_1,
                                                      const Triple<Real>& w_2)
 {
     const Real stretch = dot(t, du), a_1 = dot(t, w_1), a_2 = dot(t, w_2);
-    const Real bend = 2.0 * s.EI * inv_L0;
+    const Real bend = 2.0F * s.EI * inv_L0;
     const Triple<Real> psi = inv_L0 * cross(t, du);  // the turn of the chord
     const Triple<Real> sum = w_1 + w_2 - (psi + psi);
     BeamLoads<Real> out;
     out.N = s.EA * inv_L0 * stretch;
     out.T = s.GJ * inv_L0 * (a_2 - a_1);
-    out.F_1 = out.N * t + (3.0 * bend * inv_L0) * cross(t, sum);
-    const Real along_1 = bend * (2.0 * a_1 + a_2), along_2 = bend * (a_1 + 2.0 * a_2);
+    out.F_1 = out.N * t + (3.0F * bend * inv_L0) * cross(t, sum);
+    const Real along_1 = bend * (2.0F * a_1 + a_2), along_2 = bend * (a_1 + 2.0F * a_2);
     out.M_1 = (along_1 + out.T) * t - bend * (sum + w_1 - psi);
     out.M_2 = (along_2 - out.T) * t - bend * (sum + w_2 - psi);
     return out;

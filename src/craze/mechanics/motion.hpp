@@ -40,7 +40,7 @@ struct MotionOptions {
 /// J, since the start. work = elastic + kinetic + damping + fracture - what there was at the start.
 struct Energies {
     double elastic = 0.0;   ///< in beams and closed contacts
-    double kinetic = 0.0;   ///< of translation and rotation
+    double kinetic = 0.0;   ///< of translation and rotation: m v- v+ / 2, velocities half a step ago and ahead
     double damping = 0.0;   ///< taken by damping
     double fracture = 0.0;  ///< released by beams that broke
     double work = 0.0;      ///< done by what is imposed

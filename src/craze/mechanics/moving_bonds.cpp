@@ -181,7 +181,7 @@ void add_bonds(const BeamSection& section, const MovingBonds& bonds, std::int64_
 }
 
 BondEnergy bond_energy(const BeamSection& section, const MovingBonds& bonds, std::int64_t b, Geometry geometry,
-                       const double* pose)
+                       const double* pose, const double* const (&velocity)[2])
 {
     const auto k = static_cast<std::size_t>(b);
     MovingBonds one;
@@ -192,13 +192,19 @@ BondEnergy bond_energy(const BeamSection& section, const MovingBonds& bonds, std
     std::vector<double> ends(16), force(12);
     std::copy_n(pose + 8 * static_cast<std::int64_t>(bonds.i[k]), 8, ends.begin());
     std::copy_n(pose + 8 * static_cast<std::int64_t>(bonds.j[k]), 8, ends.begin() + 8);
-    const auto energy_with = [&](double slack) {
-        one.slack.assign(lanes, slack);
+    BondEnergy out;
+    const auto as = [&](double slack, double& energy, double& power) {
+        one.slack.assign(one.slack.size(), slack);
+        std::fill(force.begin(), force.end(), 0.0);
         BondPass pass{geometry, 0, 2, std::numeric_limits<double>::infinity(), true, 0.0, {}};
         add_bonds(section, one, 0, 1, ends.data(), force.data(), pass);
-        return pass.energy;
+        energy = pass.energy;
+        for (std::size_t c = 0; c < 12; ++c) power += force[c] * velocity[c / 6][c % 6];
     };
-    return {energy_with(-1.0), energy_with(0.0)};
+    one.slack.assign(lanes, -1.0);
+    as(-1.0, out.beam, out.beam_power);
+    as(0.0, out.contact, out.contact_power);
+    return out;
 }
 
 }  // namespace craze::mechanics

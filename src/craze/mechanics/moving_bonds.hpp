@@ -38,11 +38,12 @@ struct BondPass {
 void add_bonds(const BeamSection& section, const MovingBonds& bonds, std::int64_t begin, std::int64_t end,
                const double* pose, double* force, BondPass& pass);
 
-/// Elastic energy of bond b as a beam and as a contact beam, J.
+/// Elastic energy of bond b as a beam and as a contact beam, J, and the power of its forces on its ends, W.
 struct BondEnergy {
-    double beam = 0.0, contact = 0.0;
+    double beam = 0.0, contact = 0.0, beam_power = 0.0, contact_power = 0.0;
 };
+/// @param velocity  of both ends, six numbers each, m/s and rad/s
 BondEnergy bond_energy(const BeamSection& section, const MovingBonds& bonds, std::int64_t b, Geometry geometry,
-                       const double* pose);
+                       const double* pose, const double* const (&velocity)[2]);
 
 }  // namespace craze::mechanics

@@ -185,11 +185,15 @@ void add_end_block(double* block, const BeamSection& s, const Vec3& t, double in
 
 }  // namespace
 
-void Stiffness::diagonal(std::span<double> blocks) const
+void Stiffness::diagonal(std::span<double> blocks, std::span<const std::int32_t> group) const
 {
     assert(std::ssize(blocks) == 36 * elements_);
+    const auto within = [&](std::int32_t i, std::int32_t j) {
+        return !group.empty() && group[static_cast<std::size_t>(i)] == group[static_cast<std::size_t>(j)];
+    };
     const auto add = [&](const Share& s, const Beams& beams, std::int64_t begin, std::int64_t end) {
         for (auto b = static_cast<std::size_t>(begin); b < static_cast<std::size_t>(end); ++b) {
+            if (within(beams.i[b], beams.j[b])) continue;
             const Vec3 t{beams.tx[b], beams.ty[b], beams.tz[b]};
             const double inv_L = beams.inv_length[b];
             if (beams.i[b] >= s.begin)
@@ -200,6 +204,7 @@ void Stiffness::diagonal(std::span<double> blocks) const
     };
     const auto add_axial = [&](const Share& s, const Springs& springs, std::int64_t begin, std::int64_t end) {
         for (auto b = static_cast<std::size_t>(begin); b < static_cast<std::size_t>(end); ++b) {
+            if (within(springs.i[b], springs.j[b])) continue;
             const Vec3 t{springs.tx[b], springs.ty[b], springs.tz[b]};
             if (springs.i[b] >= s.begin)
                 add_projector(blocks.data() + 36 * std::int64_t{springs.i[b]}, 0.0, springs.k[b], t);

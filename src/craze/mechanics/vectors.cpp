@@ -42,19 +42,9 @@ CRAZE_MULTIVERSION double square_block(const double* r, const double* weight, st
     return total(s);
 }
 
-CRAZE_MULTIVERSION void step_block(double s, const double* p, const double* q, double* u, double* r, std::int64_t n)
-{
-    for (std::int64_t k = 0; k < n; ++k) u[k] += s * p[k], r[k] -= s * q[k];
-}
-
 CRAZE_MULTIVERSION void add_block(double* y, double s, const double* x, std::int64_t n)
 {
     for (std::int64_t k = 0; k < n; ++k) y[k] += s * x[k];
-}
-
-CRAZE_MULTIVERSION void scale_block(double* y, double s, const double* x, std::int64_t n)
-{
-    for (std::int64_t k = 0; k < n; ++k) y[k] = x[k] + s * y[k];
 }
 
 /// Calls work(begin, length) on fixed blocks and adds what it gives in their order.
@@ -93,23 +83,6 @@ void add_scaled(std::span<double> y, double s, std::span<const double> x)
 {
     parallel_ranges(std::ssize(y), [&](std::int64_t begin, std::int64_t end) {
         add_block(y.data() + begin, s, x.data() + begin, end - begin);
-    });
-}
-
-void scale_and_add(std::span<double> y, double s, std::span<const double> x)
-{
-    parallel_ranges(std::ssize(y), [&](std::int64_t begin, std::int64_t end) {
-        scale_block(y.data() + begin, s, x.data() + begin, end - begin);
-    });
-}
-
-double step_and_measure(double s, std::span<const double> p, std::span<const double> q, double inv_radius,
-                        std::span<double> u, std::span<double> r)
-{
-    const Weights weights(inv_radius);
-    return over_blocks(std::ssize(u), [&](std::int64_t at, std::int64_t n) {
-        step_block(s, p.data() + at, q.data() + at, u.data() + at, r.data() + at, n);
-        return square_block(r.data() + at, weights.value, n);
     });
 }
 

@@ -3,6 +3,8 @@
 #include "craze/core/errors.hpp"
 #include "craze/core/parallel.hpp"
 #include "craze/mechanics/coarse_space.hpp"
+#include "craze/mechanics/multilevel.hpp"
+#include "craze/mechanics/single_stiffness.hpp"
 #include "craze/mechanics/stiffness.hpp"
 #include "support/packings.hpp"
 
@@ -251,6 +253,76 @@ TEST(Equilibrium, OfASpecimenCutInTwoBearsNothing)
         equilibrate(lattice, squeezed(lattice, -1e-3), affine_state(lattice, {0, 0, 1e-3}), {.tolerance = 1e-9});
     const double whole = 200e9 * 1e-3 * lattice.box.x * lattice.box.y;
     EXPECT_LT(std::abs(face_force(find_face(lattice, 2, true), solved.forces.force)), 1e-6 * whole);
+}
+
+TEST(SingleStiffness, AgreesWithDoublePrecisionAndGivesTheSameBitsOnAnyNumberOfThreads)
+{
+    const Lattice lattice = make_lattice(cracked(3000, 2), {});
+    const State a = shaken(lattice, 0.01);
+    const Stiffness stiffness(lattice, lattice.kind);
+    std::vector<double> f(a.u.size());
+    stiffness.apply(a.u, f);
+    const double R = lattice.mean_radius, EA = lattice.section.EA;
+    std::vector<float> first;
+    for (const int team : {1, 2, 3}) {
+        set_threads(team);
+        SingleStiffness single;
+        single.set_beams(stiffness, R);
+        const auto rows = static_cast<std::size_t>(single.blocks() * block_rows);
+        std::vector<float> p(8 * rows, 0.0F), q(8 * rows, 1.0F);
+        for (std::size_t k = 0; k < a.u.size(); ++k)
+            p[8 * (k / 6) + k % 6] = static_cast<float>(a.u[k] / (k % 6 < 3 ? R : 1.0));
+        for (std::int64_t part = 0; part < single.parts(); ++part) single.apply(part, p.data(), q.data());
+        double worst = 0.0, largest = 0.0;
+        for (std::size_t k = 0; k < a.u.size(); ++k) {
+            const double expected = f[k] / EA / (k % 6 < 3 ? 1.0 : R);
+            worst = std::max(worst, std::abs(double{q[8 * (k / 6) + k % 6]} - expected));
+            largest = std::max(largest, std::abs(expected));
+        }
+        EXPECT_LT(worst, 2e-6 * largest);
+        if (first.empty()) first = q;
+        EXPECT_EQ(std::memcmp(first.data(), q.data(), sizeof(float) * q.size()), 0) << team;
+    }
+    set_threads(1);
+}
+
+TEST(Multilevel, IsSymmetricPositiveAndLeavesImposedDegreesOfFreedomAlone)
+{
+    const Lattice lattice = make_lattice(cracked(3000, 2), {});
+    const Stiffness stiffness(lattice, lattice.kind);
+    const Constraints held = squeezed(lattice, 1e-3);
+    Multilevel preconditioner;
+    preconditioner.set_up(lattice, stiffness, held.dof);
+    const std::int64_t blocks = (lattice.elements() + block_rows - 1) / block_rows;
+    const auto rows = static_cast<std::size_t>(blocks * block_rows);
+    const auto answer = [&](const std::vector<float>& r, double& rz) {
+        std::vector<float> z(r.size(), 0.0F), p(r.size(), 0.0F);
+        rz = 0.0;
+        for (std::int64_t b = 0; b < blocks; ++b) rz += preconditioner.descend(b, r.data(), z.data());
+        rz += preconditioner.solve_coarse();
+        for (std::int64_t b = 0; b < blocks; ++b) preconditioner.ascend(b, z.data(), 0.0F, p.data());
+        return p;
+    };
+    const auto load = [&](std::uint64_t seed) {
+        Random random(seed);
+        std::vector<float> r(8 * rows, 0.0F);
+        for (std::size_t k = 0; k < 6 * lattice.r.size(); ++k)
+            r[8 * (k / 6) + k % 6] = static_cast<float>(random.uniform(-1, 1));
+        for (const auto dof : held.dof) r[static_cast<std::size_t>(8 * (dof / 6) + dof % 6)] = 0.0F;
+        return r;
+    };
+    const auto dot = [](const std::vector<float>& a, const std::vector<float>& b) {
+        return std::inner_product(
+            a.begin(), a.end(), b.begin(), 0.0, [](double s, double x) { return s + x; },
+            [](float x, float y) { return double{x} * double{y}; });
+    };
+    const auto a = load(1), b = load(2);
+    double aa = 0.0, bb = 0.0;
+    const auto on_a = answer(a, aa), on_b = answer(b, bb);
+    EXPECT_NEAR(dot(a, on_a) / aa, 1.0, 1e-4);
+    EXPECT_GT(aa, 0.0);
+    EXPECT_NEAR(dot(a, on_b), dot(b, on_a), 1e-4 * std::sqrt(aa * bb));
+    for (const auto dof : held.dof) EXPECT_EQ(on_a[static_cast<std::size_t>(8 * (dof / 6) + dof % 6)], 0.0F);
 }
 
 TEST(Aggregates, HoldEveryBondedElementOnceAndAreConnected)

@@ -129,12 +129,13 @@ TEST(Motion, ForcesInSmallDisplacementsAreThoseOfEquilibrium)
     EXPECT_NEAR(motion.energies().elastic / expected.energy, 1.0, 1e-12);
 }
 
-// Undamped and unbroken, the energy of velocity Verlet oscillates about a constant, with the square of the step. The
-// beams alone: opening and closing contacts are not smooth.
-TEST_P(InEitherGeometry, UndampedEnergyOscillatesWithTheSquareOfTheStepAndDoesNotDrift)
+// Undamped and unbroken. Leapfrog keeps the energy of a linear lattice exactly, whatever the stable step; large
+// rotations make it swing a little. The beams alone: opening and closing contacts are not smooth.
+TEST_P(InEitherGeometry, UndampedEnergyIsKept)
 {
     const Lattice lattice = make_lattice(support::small_packing(200, 3), BeamMaterial{});
-    const auto swing = [&](double fraction, double& drift) {
+    const bool linear = GetParam() == Geometry::small_displacement;
+    for (const double fraction : {0.1, 0.4, 0.85}) {
         MotionOptions options{.geometry = GetParam(), .step_fraction = fraction, .free_contacts = false};
         Motion motion(lattice, options, shaken(lattice, 0.003));
         const auto total = [&] {
@@ -150,22 +151,16 @@ TEST_P(InEitherGeometry, UndampedEnergyOscillatesWithTheSquareOfTheStepAndDoesNo
             low = std::min(low, now), high = std::max(high, now);
             (k < blocks / 2 ? early : late) += now / (blocks / 2);
         }
-        drift = std::abs(late - early) / start;
-        return (high - low) / start;
-    };
-    double drift_1 = 0.0, drift_2 = 0.0;
-    const double wide = swing(0.4, drift_1), narrow = swing(0.1, drift_2);
-    EXPECT_GT(wide, 0.0);
-    EXPECT_NEAR(wide / narrow, 16.0, 5.0);
-    EXPECT_LT(drift_1, 0.1 * wide);
-    EXPECT_LT(drift_2, 0.1 * narrow);
+        EXPECT_LT((high - low) / start, linear ? 1e-10 : 0.02 * fraction * fraction) << fraction;
+        EXPECT_LT(std::abs(late - early) / start, linear ? 1e-10 : 0.002 * fraction * fraction) << fraction;
+    }
 }
 
 TEST(Motion, DrivenWorkIsElasticKineticDampingAndFractureEnergy)
 {
     const Lattice lattice = cracked_lattice();
     for (const auto geometry : {Geometry::small_displacement, Geometry::corotational}) {
-        // Breaking beams ring at the highest frequencies, whose energy velocity Verlet knows to the square of the step.
+        // At the default step, 0.85, the balance misses up to 1.1 %, why is open.
         Motion motion = breaking_motion(lattice, geometry, 0.4);
         motion.drive(driven_faces(lattice, 0.5));
         const Vec3 rate{2 * 0.5 / lattice.box.x, 0, 0};

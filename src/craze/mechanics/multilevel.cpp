@@ -1,0 +1,315 @@
+#include "craze/mechanics/multilevel.hpp"
+
+#include "craze/core/parallel.hpp"
+#include "craze/mechanics/lanes.hpp"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+
+namespace craze::mechanics {
+
+namespace {
+
+using Block = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+
+/// Inverse of a symmetric positive semi-definite block, scaled to a unit diagonal and shifted a little so that a
+/// direction without stiffness is finite; rows that are held are empty and stay so.
+Block safe_inverse(const Block& block)
+{
+    constexpr double shift = 1e-3;
+    Eigen::Matrix<double, 6, 1> scale;
+    for (int c = 0; c < 6; ++c) scale[c] = block(c, c) > 0.0 ? 1.0 / std::sqrt(block(c, c)) : 0.0;
+    Block unit = scale.asDiagonal() * block * scale.asDiagonal();
+    for (int c = 0; c < 6; ++c) unit(c, c) = scale[c] > 0.0 ? 1.0 + shift : 1.0;
+    const Block inverse = unit.llt().solve(Block::Identity());
+    return scale.asDiagonal() * inverse * scale.asDiagonal();
+}
+
+void keep_inverse(const Block& block, float* to)
+{
+    Eigen::Map<Eigen::Matrix<float, 6, 6, Eigen::RowMajor>>{to} = safe_inverse(block).cast<float>();
+}
+
+/// Newton and metre become EA and R.
+void make_dimensionless(std::span<double> blocks, double EA, double R)
+{
+    const double by[3] = {R / EA, 1.0 / EA, 1.0 / (EA * R)};
+    parallel_ranges(std::ssize(blocks) / 36, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t e = begin; e < end; ++e)
+            for (int r = 0; r < 6; ++r)
+                for (int c = 0; c < 6; ++c)
+                    blocks[static_cast<std::size_t>(36 * e + 6 * r + c)] *= by[(r > 2) + (c > 2)];
+    });
+}
+
+/// D^-1 r of one row: a row of six blocks read as eight, of which the last two say nothing.
+CRAZE_INLINE Floats times(const float* inverse, const float* r)
+{
+    Floats sum{};
+    for (int c = 0; c < 6; ++c) sum += load(inverse + 6 * c) * r[c];
+    sum[6] = sum[7] = 0.0F;
+    return sum;
+}
+
+/// What a force and a moment at a node are about the centre of its parent.
+CRAZE_INLINE void gather(const float* arm, const float* f, float* load)
+{
+    for (int c = 0; c < 6; ++c) load[c] += f[c];
+    load[3] += arm[1] * f[2] - arm[2] * f[1];
+    load[4] += arm[2] * f[0] - arm[0] * f[2];
+    load[5] += arm[0] * f[1] - arm[1] * f[0];
+}
+/// How a node moves with its parent.
+CRAZE_INLINE void follow(const float* arm, const float* y, float* u)
+{
+    for (int c = 0; c < 6; ++c) u[c] += y[c];
+    u[0] += y[4] * arm[2] - y[5] * arm[1];
+    u[1] += y[5] * arm[0] - y[3] * arm[2];
+    u[2] += y[3] * arm[1] - y[4] * arm[0];
+}
+
+CRAZE_INLINE float dot_row(const float* a, Floats b)
+{
+    float sum = 0.0F;
+    for (int c = 0; c < 6; ++c) sum += a[c] * b[c];
+    return sum;
+}
+
+CRAZE_MULTIVERSION double descend_rows(const float* inverse, const float* r, float* z, std::int64_t begin,
+                                       std::int64_t end)
+{
+    Floats sum{};
+    for (std::int64_t e = begin; e < end; ++e) {
+        const Floats answer = times(inverse + 36 * e, r + floats * e);
+        store(z + floats * e, answer);
+        sum += answer * load(r + floats * e);
+    }
+    double total = 0.0;
+    for (int c = 0; c < 6; ++c) total += double{sum[c]};
+    return total;
+}
+
+CRAZE_MULTIVERSION void gather_rows(const std::int32_t* parent, const float* arm, const float* r, float* load,
+                                    std::int64_t begin, std::int64_t end)
+{
+    for (std::int64_t e = begin; e < end; ++e)
+        if (parent[e] >= 0) gather(arm + 4 * e, r + floats * e, load + floats * parent[e]);
+}
+
+CRAZE_MULTIVERSION void ascend_rows(const std::int32_t* parent, const float* arm, const float* answer, const float* z,
+                                    float beta, float* p, std::int64_t begin, std::int64_t end)
+{
+    for (std::int64_t e = begin; e < end; ++e) {
+        Floats u = load(z + floats * e) + beta * load(p + floats * e);
+        if (parent[e] >= 0) {
+            const float *a = arm + 4 * e, *y = answer + floats * parent[e];
+            u += load(y);
+            u[0] += y[4] * a[2] - y[5] * a[1];
+            u[1] += y[5] * a[0] - y[3] * a[2];
+            u[2] += y[3] * a[1] - y[4] * a[0];
+        }
+        store(p + floats * e, u);
+    }
+}
+
+}  // namespace
+
+void Multilevel::set_up(const Lattice& lattice, const Stiffness& stiffness, std::span<const std::int64_t> imposed)
+{
+    const BeamSection& section = stiffness.section();
+    const double R = lattice.mean_radius;
+    elements_ = lattice.elements();
+    const std::int64_t blocks = (elements_ + block_rows - 1) / block_rows;
+    imposed_.assign(imposed.begin(), imposed.end());
+    imposed_first_.assign(static_cast<std::size_t>(blocks) + 1, 0);
+    held_.assign(static_cast<std::size_t>(elements_), 0);
+    for (const std::int64_t dof : imposed) {
+        held_[static_cast<std::size_t>(dof / 6)] |= static_cast<std::uint8_t>(1U << (dof % 6));
+        ++imposed_first_[static_cast<std::size_t>(dof / 6 / block_rows) + 1];
+    }
+    for (std::size_t b = 1; b < imposed_first_.size(); ++b) imposed_first_[b] += imposed_first_[b - 1];
+
+    std::vector<double> whole(static_cast<std::size_t>(36 * elements_), 0.0);
+    stiffness.diagonal(whole);
+    make_dimensionless(whole, section.EA, R);
+    inverse_.assign(whole.size() + floats, 0.0F);
+    parallel_ranges(elements_, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t e = begin; e < end; ++e) {
+            Block block = Eigen::Map<const Block>(whole.data() + 36 * e);
+            for (int c = 0; c < 6; ++c) {
+                // What nothing holds now may be pushed later, before this inverse is made anew.
+                if (!(block(c, c) > 0.0)) block(c, c) = c < 3 ? 0.5 : section.EI / (section.EA * R * R);
+                if (!(held_[static_cast<std::size_t>(e)] >> c & 1)) continue;
+                block.row(c).setZero();
+                block.col(c).setZero();
+            }
+            keep_inverse(block, inverse_.data() + 36 * e);
+        }
+    });
+
+    levels_.clear();
+    group_of_.resize(static_cast<std::size_t>(elements_));
+    centres_.resize(group_of_.size());
+    for (std::int32_t e = 0; e < lattice.elements(); ++e)
+        group_of_[static_cast<std::size_t>(e)] = e, centres_[static_cast<std::size_t>(e)] = lattice.centre(e);
+    // The top grows with the lattice so that its factor stays small beside the iterations.
+    const std::int64_t top = std::max<std::int64_t>(60, elements_ / 280);
+    const Beams& beams = stiffness.beams();
+    std::vector<std::int32_t> i, j;
+    for (std::int64_t size = 1; 2 * size <= top;) {
+        const std::int64_t factor = size == 1 ? 12 : top / size > 10 ? 6 : std::max<std::int64_t>(2, top / size);
+        i.clear(), j.clear();
+        for (std::size_t b = 0; b < static_cast<std::size_t>(beams.count); ++b) {
+            const std::int32_t from = group_of_[static_cast<std::size_t>(beams.i[b])],
+                               to = group_of_[static_cast<std::size_t>(beams.j[b])];
+            if (from != to) i.push_back(from), j.push_back(to);
+        }
+        std::vector<std::int64_t> members;
+        const auto nodes = static_cast<std::int64_t>(centres_.size());
+        auto parent = grow_groups(graph_of(nodes, i, j), factor, size == 1 ? block_rows : nodes, members);
+        // A piece of matter that is one node already goes on as its own parent.
+        for (std::size_t k = 0; k < parent.size(); ++k)
+            if (parent[k] < 0 && size > 1) parent[k] = static_cast<std::int32_t>(members.size()), members.push_back(1);
+        std::vector<std::int32_t> of(group_of_.size());
+        for (std::size_t e = 0; e < of.size(); ++e)
+            of[e] = group_of_[e] < 0 ? -1 : parent[static_cast<std::size_t>(group_of_[e])];
+        const Aggregates groups = aggregates_of(lattice, std::move(of), std::ssize(members));
+        size *= factor;
+
+        Level level;
+        level.count = groups.count();
+        level.parent = std::move(parent);
+        level.arm.assign(4 * centres_.size(), 0.0F);
+        for (std::size_t k = 0; k < centres_.size(); ++k) {
+            if (level.parent[k] < 0) continue;
+            const Vec3 a = (centres_[k] - groups.centre[static_cast<std::size_t>(level.parent[k])]) / R;
+            for (std::size_t c = 0; c < 3; ++c) level.arm[4 * k + c] = static_cast<float>(a[static_cast<int>(c)]);
+        }
+        level.load.assign(static_cast<std::size_t>(floats * level.count), 0.0F), level.answer = level.load;
+        levels_.push_back(std::move(level));
+        add_level(lattice, stiffness, whole, groups, 2 * size > top);
+    }
+}
+
+/// Blocks of the groups of the last level, or the factor if it is the top.
+void Multilevel::add_level(const Lattice& lattice, const Stiffness& stiffness, std::span<const double> whole,
+                           const Aggregates& groups, bool top)
+{
+    Level& level = levels_.back();
+    group_of_ = groups.of, centres_ = groups.centre;
+    if (levels_.size() == 1) {
+        first_group_.assign(imposed_first_.size(), static_cast<std::int32_t>(level.count));
+        for (std::int64_t e = elements_ - 1; e >= 0; --e)
+            if (const std::int32_t g = group_of_[static_cast<std::size_t>(e)]; g >= 0) {
+                auto& first = first_group_[static_cast<std::size_t>(e / block_rows)];
+                first = std::min(first, g);
+            }
+        for (std::size_t b = first_group_.size() - 1; b > 0; --b)
+            first_group_[b - 1] = std::min(first_group_[b - 1], first_group_[b]);
+    }
+    if (top) {
+        top_.resize(static_cast<std::size_t>(6 * level.count));
+        coarse_.set_up(lattice, stiffness, imposed_, groups);
+        return;
+    }
+    std::vector<double> crossing(whole.size(), 0.0);
+    stiffness.diagonal(crossing, group_of_);
+    make_dimensionless(crossing, stiffness.section().EA, lattice.mean_radius);
+    level.inverse.assign(static_cast<std::size_t>(36 * level.count + floats), 0.0F);
+    parallel_ranges(level.count, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t g = begin; g < end; ++g) {
+            Block sum = Block::Zero();
+            for (auto m = groups.first[static_cast<std::size_t>(g)]; m < groups.first[static_cast<std::size_t>(g) + 1];
+                 ++m) {
+                const auto e = static_cast<std::size_t>(groups.elements[static_cast<std::size_t>(m)]);
+                Block own = Eigen::Map<const Block>(crossing.data() + 36 * e);
+                if (held_[e] != 0)  // where it is held an element stays behind its group
+                    for (int r = 0; r < 6; ++r)
+                        for (int c = 0; c < 6; ++c) {
+                            const bool r_held = held_[e] >> r & 1, c_held = held_[e] >> c & 1;
+                            if (r_held != c_held) own(r, c) = 0.0;
+                            if (r_held && c_held) own(r, c) = whole[36 * e + static_cast<std::size_t>(6 * r + c)];
+                        }
+                const Vec3 a =
+                    (lattice.centre(static_cast<std::int32_t>(e)) - groups.centre[static_cast<std::size_t>(g)]) /
+                    lattice.mean_radius;
+                Block motion = Block::Identity();
+                motion(0, 4) = a.z, motion(0, 5) = -a.y, motion(1, 5) = a.x;
+                motion(1, 3) = -a.z, motion(2, 3) = a.y, motion(2, 4) = -a.x;
+                sum.noalias() += motion.transpose() * (own * motion);
+            }
+            keep_inverse(sum, level.inverse.data() + 36 * g);
+        }
+    });
+}
+
+double Multilevel::descend(std::int64_t block, const float* r, float* z)
+{
+    const std::int64_t begin = block * block_rows, end = std::min(begin + block_rows, elements_);
+    double sum = descend_rows(inverse_.data(), r, z, begin, end);
+    if (levels_.empty()) return sum;
+    Level& level = levels_.front();
+    const std::int64_t g_begin = first_group_[static_cast<std::size_t>(block)],
+                       g_end = first_group_[static_cast<std::size_t>(block) + 1];
+    std::fill(level.load.begin() + floats * g_begin, level.load.begin() + floats * g_end, 0.0F);
+    gather_rows(level.parent.data(), level.arm.data(), r, level.load.data(), begin, end);
+    if (!level.inverse.empty())
+        sum += descend_rows(level.inverse.data(), level.load.data(), level.answer.data(), g_begin, g_end);
+    return sum;
+}
+
+double Multilevel::solve_coarse()
+{
+    double sum = 0.0;
+    for (std::size_t l = 1; l < levels_.size(); ++l) {
+        Level& level = levels_[l];
+        std::fill(level.load.begin(), level.load.end(), 0.0F);
+        gather_rows(level.parent.data(), level.arm.data(), levels_[l - 1].load.data(), level.load.data(), 0,
+                    levels_[l - 1].count);
+        if (!level.inverse.empty())
+            sum += descend_rows(level.inverse.data(), level.load.data(), level.answer.data(), 0, level.count);
+    }
+    if (levels_.empty()) return sum;
+    Level& top = levels_.back();
+    for (std::int64_t g = 0; g < top.count; ++g)
+        for (std::int64_t c = 0; c < 6; ++c)
+            top_[static_cast<std::size_t>(6 * g + c)] = top.load[static_cast<std::size_t>(floats * g + c)];
+    coarse_.solve(top_);
+    for (std::int64_t g = 0; g < top.count; ++g)
+        for (std::int64_t c = 0; c < 6; ++c) {
+            const auto from = static_cast<std::size_t>(6 * g + c), to = static_cast<std::size_t>(floats * g + c);
+            top.answer[to] = top_[from];
+            sum += double{top_[from]} * double{top.load[to]};
+        }
+    for (std::size_t l = levels_.size() - 1; l > 0; --l) {
+        const Level& level = levels_[l];
+        Level& below = levels_[l - 1];
+        for (std::int64_t k = 0; k < below.count; ++k) {
+            const std::int32_t parent = level.parent[static_cast<std::size_t>(k)];
+            if (parent >= 0)
+                follow(level.arm.data() + 4 * k, level.answer.data() + floats * std::int64_t{parent},
+                       below.answer.data() + floats * k);
+        }
+    }
+    return sum;
+}
+
+void Multilevel::ascend(std::int64_t block, const float* z, float beta, float* p) const
+{
+    const std::int64_t begin = block * block_rows, end = std::min(begin + block_rows, elements_);
+    if (levels_.empty()) {
+        for (std::int64_t k = floats * begin; k < floats * end; ++k) p[k] = z[k] + beta * p[k];
+    } else {
+        const Level& level = levels_.front();
+        ascend_rows(level.parent.data(), level.arm.data(), level.answer.data(), z, beta, p, begin, end);
+    }
+    for (auto k = imposed_first_[static_cast<std::size_t>(block)];
+         k < imposed_first_[static_cast<std::size_t>(block) + 1]; ++k) {
+        const std::int64_t dof = imposed_[static_cast<std::size_t>(k)];
+        p[floats * (dof / 6) + dof % 6] = 0.0F;
+    }
+}
+
+}  // namespace craze::mechanics

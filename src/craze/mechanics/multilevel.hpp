@@ -1,0 +1,57 @@
+// An approximate inverse of the stiffness, which makes conjugate gradients converge in few iterations.
+
+#pragma once
+
+#include "craze/mechanics/coarse_space.hpp"
+#include "craze/mechanics/lattice.hpp"
+#include "craze/mechanics/single_stiffness.hpp"
+#include "craze/mechanics/stiffness.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace craze::mechanics {
+
+/// The sum over levels of P D^-1 P^T: elements, then groups of about 12, 72, ... elements that move rigidly, each with
+/// the inverse of its own 6x6 block, and at the top a few hundred groups solved together. Units and rows are those of
+/// SingleStiffness. Singular blocks (elements held by contacts alone, or by nothing) are regularised here, so that the
+/// system itself need not be.
+class Multilevel {
+public:
+    /// @param imposed  degrees of freedom that do not move, ascending
+    void set_up(const Lattice& lattice, const Stiffness& stiffness, std::span<const std::int64_t> imposed);
+
+    /// z = D^-1 r of the elements of one block, and the loads of the groups of its first level. Gives r . (what both
+    /// levels answer).
+    double descend(std::int64_t block, const float* r, float* z);
+    /// All coarser levels, once every block has descended. Gives r . (what they answer).
+    double solve_coarse();
+    /// p = z + (answers of all groups) + beta p, zero at imposed degrees of freedom, in one block.
+    void ascend(std::int64_t block, const float* z, float beta, float* p) const;
+
+private:
+    struct Level {
+        std::vector<std::int32_t> parent;         ///< of each node of the level below, -1 for none
+        std::vector<float> arm;                   ///< from the parent's centre to the node, R, shape (nodes below, 4)
+        std::vector<float> inverse;               ///< shape (nodes, 6, 6); of the top level none
+        mutable std::vector<float> load, answer;  ///< shape (nodes, 8)
+        std::int64_t count = 0;
+    };
+    void add_level(const Lattice& lattice, const Stiffness& stiffness, std::span<const double> whole,
+                   const Aggregates& groups, bool top);
+
+    std::int64_t elements_ = 0;
+    std::vector<float> inverse_;  ///< of elements, shape (n, 6, 6)
+    std::vector<Level> levels_;
+    std::vector<Vec3> centres_;              ///< of the nodes of the last level made, m
+    std::vector<std::int32_t> group_of_;     ///< of elements, in that level
+    std::vector<std::int32_t> first_group_;  ///< of the first level, per block
+    std::vector<std::uint8_t> held_;         ///< bit c: number c of the element is imposed
+    std::vector<std::int64_t> imposed_;
+    std::vector<std::int64_t> imposed_first_;  ///< per block
+    std::vector<float> top_;                   ///< six per group
+    CoarseSpace coarse_;
+};
+
+}  // namespace craze::mechanics
