@@ -10,9 +10,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace craze::mechanics {
+
+namespace {
+constexpr std::int64_t longest_search = 1000;  // in single precision, until what is left is looked at in double
+}
 
 struct EquilibriumSolver::Work {
     const Lattice& lattice;
@@ -26,7 +31,7 @@ struct EquilibriumSolver::Work {
     std::vector<std::uint8_t> closed_at_setup;  ///< and those the preconditioner knows
     std::vector<std::int64_t> imposed;
     InnerSolver inner;
-    bool preconditioner_fits = false, searching = false;  ///< the inner solver has a direction worth keeping
+    bool preconditioner_fits = false;
 
     std::vector<double> gap, opening, r, d, q;
 
@@ -43,6 +48,7 @@ struct EquilibriumSolver::Work {
     void out_of_balance(const State& state);
     double scale(const State& state) const;
     double exact_step();
+    double rounding(const State& state) const;
     void hold(std::vector<double>& v) const
     {
         for (const std::int64_t dof : imposed) v[static_cast<std::size_t>(dof)] = 0.0;
@@ -96,7 +102,7 @@ void EquilibriumSolver::Work::set_up_preconditioner()
 {
     inner.set_up_preconditioner(*stiffness, imposed);
     closed_at_setup = closed;
-    preconditioner_fits = true, searching = false;
+    preconditioner_fits = true;
 }
 
 /// r = forces on the elements, zero where imposed; gap of every contact.
@@ -148,6 +154,17 @@ double EquilibriumSolver::Work::exact_step()
     return s;
 }
 
+/// What the last digit of every number of the state weighs, as a norm of forces.
+double EquilibriumSolver::Work::rounding(const State& state) const
+{
+    std::vector<double> blocks(6 * state.u.size(), 0.0), last(state.u.size(), 0.0);
+    stiffness->diagonal(blocks);
+    for (std::size_t e = 0; e < last.size() / 6; ++e)
+        for (std::size_t k = 0; k < 36; ++k)
+            last[6 * e + k / 6] += std::abs(blocks[36 * e + k] * state.u[6 * e + k % 6]);
+    return std::numeric_limits<double>::epsilon() * std::sqrt(weighted_square(last, inv_radius));
+}
+
 EquilibriumSolver::EquilibriumSolver(const Lattice& lattice, EquilibriumOptions options)
     : work_(std::make_unique<Work>(lattice, options))
 {
@@ -186,14 +203,14 @@ Equilibrium EquilibriumSolver::solve(const Constraints& constraints, State start
 {
     Work& w = *work_;
     check_shapes(w.lattice, constraints, start);
-    Equilibrium out{std::move(start), {}, 0.0, 0, 0};
+    Equilibrium out{std::move(start), {}, 0.0, 0, 0, 0};
     w.take_kinds(out.state.kind);
     w.take_imposed(constraints, out.state);
 
-    constexpr double forcing = 0.05;  // single precision gives three digits a time, contact has changed before
-    double believed = 0.0;
-    w.searching = false;
+    enum class Search { anew, going_on, in_double } search = w.options.single ? Search::anew : Search::in_double;
+    double believed = 0.0, before = INFINITY;  // norms after the last search: as it says, and before it
     double largest_scale = 0.0;
+    int stalls = 0;  // searches in a row, with the same contacts closed, that did not halve what was left
     for (int round = 0;; ++round) {
         w.out_of_balance(out.state);
         const double norm = std::sqrt(weighted_square(w.r, w.inv_radius));
@@ -203,6 +220,17 @@ Equilibrium EquilibriumSolver::solve(const Constraints& constraints, State start
         const double scale = std::max(scale_now, 1e-6 * largest_scale);
         out.residual = scale > 0.0 ? norm / scale : 0.0;
         if (out.residual <= w.options.tolerance) break;
+        const bool changed = w.take_closed_set();
+        out.newton += changed || round == 0;
+        const bool stalled = !changed && !(norm < 0.5 * before);
+        stalls = stalled ? stalls + 1 : 0;
+        if (search == Search::in_double) {
+            if (stalled && norm <= w.rounding(out.state)) break;
+        } else if (stalls > 1) {
+            search = Search::in_double;
+        } else if (changed || stalled || !(norm < 1.5 * believed)) {
+            search = Search::anew;
+        }
         if (!std::isfinite(out.residual) || out.newton > w.options.newton || round == 10 * w.options.newton ||
             out.iterations >= w.options.iterations)
             throw ComputationFailed(fmt::format(
@@ -211,15 +239,26 @@ Equilibrium EquilibriumSolver::solve(const Constraints& constraints, State start
                 "iterations and {} changes of the closed contacts. Try smaller load steps, a looser tolerance or more "
                 "iterations; a specimen cut through by cracks may have nothing left to carry the load",
                 out.residual, w.options.tolerance, out.iterations, out.newton));
-        out.newton += w.take_closed_set() || round == 0;
-        if (!w.preconditioner_fits) w.set_up_preconditioner();
-        // What was believed to be left is nearly what is left: the search may go on.
-        w.searching = w.searching && norm < 2.0 * believed;
-        const double target = std::max(0.5 * w.options.tolerance * scale, forcing * norm);
-        const auto inner = w.inner.solve(w.r, target, w.options.iterations - out.iterations, w.searching, w.d);
-        out.iterations += inner.iterations, believed = inner.norm;
+        if (!w.preconditioner_fits) {
+            w.set_up_preconditioner();
+            if (search == Search::going_on) search = Search::anew;
+        }
+        const double goal = 0.5 * w.options.tolerance * scale;
+        const std::int64_t most = w.options.iterations - out.iterations;
+        InnerSolver::Result inner;
+        if (search == Search::in_double) {
+            inner = w.inner.solve_in_double(*w.stiffness, w.r,
+                                            std::max(goal, w.contacts.size() > 0 ? 0.05 * norm : 0.0), most, w.d);
+            out.in_double += inner.iterations;
+        } else {
+            // Single precision gives two or three digits at a time.
+            inner = w.inner.solve(w.r, std::max(goal, 0.05 * norm), std::min(most, longest_search),
+                                  search == Search::going_on, w.d);
+        }
+        out.iterations += inner.iterations, believed = inner.norm, before = norm;
         const double s = w.contacts.size() == 0 ? 1.0 : w.exact_step();
-        w.searching = std::abs(s - 1.0) < 0.1 && inner.iterations > 0;
+        if (search != Search::in_double)
+            search = std::abs(s - 1.0) < 0.1 && inner.iterations > 0 ? Search::going_on : Search::anew;
         add_scaled(out.state.u, s, w.d);
     }
     out.forces = forces(w.lattice, out.state, w.options.free_contacts);

@@ -16,6 +16,7 @@ struct EquilibriumOptions {
     std::int64_t iterations = 20000;  ///< most conjugate-gradient iterations in all
     int newton = 100;                 ///< most changes of the set of closed contacts
     bool free_contacts = true;        ///< let unbonded neighbours touch [Eq. 5]
+    bool single = true;               ///< search in single precision, in double where that stalls; or in double only
 };
 
 struct Equilibrium {
@@ -24,6 +25,7 @@ struct Equilibrium {
     double residual = 0.0;        ///< see EquilibriumSolver
     std::int64_t iterations = 0;  ///< conjugate gradients
     int newton = 0;               ///< linear systems solved: 1 where nothing opens or closes
+    std::int64_t in_double = 0;   ///< those of the iterations that needed double precision
 };
 
 /// Finds equilibria of one lattice; keeps what can be reused from one load to the next.
@@ -34,7 +36,8 @@ struct Equilibrium {
 ///
 /// The residual is the norm of what is out of balance at the free degrees of freedom over the norm of the forces that
 /// bonds and contacts exert on their ends (moments counted over R_DE), or over a millionth of the largest such norm met
-/// on the way where a specimen bears next to nothing.
+/// on the way where a specimen bears next to nothing. Where the tolerance asks for less than the last digit of the
+/// displacements weighs, that digit is what is reached.
 class EquilibriumSolver {
 public:
     explicit EquilibriumSolver(const Lattice& lattice, EquilibriumOptions options = {});

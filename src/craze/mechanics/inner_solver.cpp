@@ -3,6 +3,7 @@
 #include "craze/core/parallel.hpp"
 #include "craze/core/progress.hpp"
 #include "craze/mechanics/lanes.hpp"
+#include "craze/mechanics/vectors.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -164,6 +165,65 @@ InnerSolver::Result InnerSolver::solve(std::span<const double> r, double target,
                     double{d_[static_cast<std::size_t>(floats * e + c)]} * (c < 3 ? length : angle);
         return 0.0;
     });
+    return out;
+}
+
+/// z = M r, scaled so that single precision suffices however small r is.
+void InnerSolver::precondition(std::span<const double> r, std::span<double> z)
+{
+    const double per_moment = 1.0 / lattice_.mean_radius;
+    double largest = 0.0;
+    for (std::size_t k = 0; k < r.size(); ++k)
+        largest = std::max(largest, std::abs(k % 6 < 3 ? r[k] : r[k] * per_moment));
+    const double unit = largest > 0.0 ? largest : 1.0;
+    over_blocks(stiffness_, part_, nothing, [&](std::int64_t b) {
+        for (std::int64_t e = b * block_rows; e < std::min<std::int64_t>((b + 1) * block_rows, lattice_.elements());
+             ++e)
+            for (std::int64_t c = 0; c < 6; ++c)
+                r_[static_cast<std::size_t>(floats * e + c)] =
+                    static_cast<float>(r[static_cast<std::size_t>(6 * e + c)] / unit * (c < 3 ? 1.0 : per_moment));
+        return preconditioner_.descend(b, r_.data(), z_.data());
+    });
+    preconditioner_.solve_coarse();
+    const double length = unit / EA_ * lattice_.mean_radius, angle = unit / EA_;
+    over_blocks(stiffness_, part_, nothing, [&](std::int64_t b) {
+        preconditioner_.ascend(b, z_.data(), 0.0F, p_.data());
+        for (std::int64_t e = b * block_rows; e < std::min<std::int64_t>((b + 1) * block_rows, lattice_.elements());
+             ++e)
+            for (std::int64_t c = 0; c < 6; ++c)
+                z[static_cast<std::size_t>(6 * e + c)] =
+                    double{p_[static_cast<std::size_t>(floats * e + c)]} * (c < 3 ? length : angle);
+        return 0.0;
+    });
+}
+
+InnerSolver::Result InnerSolver::solve_in_double(const Stiffness& stiffness, std::span<const double> r_0, double target,
+                                                 std::int64_t most, std::span<double> d)
+{
+    const double inv_radius = 1.0 / lattice_.mean_radius;
+    std::vector<double> r(r_0.begin(), r_0.end()), z(r.size()), q(r.size());
+    std::fill(d.begin(), d.end(), 0.0);
+    std::fill(p_.begin(), p_.end(), 0.0F);  // 0 times what a stalled search left would be no number
+    precondition(r, z);
+    std::vector<double> p = z;
+    double rz = dot(r, z);
+    Result out{0, std::sqrt(weighted_square(r, inv_radius))};
+    while (out.norm > target && out.iterations < most && rz > 0.0) {
+        check_interrupt();
+        stiffness.apply(p, q);
+        for (const std::int64_t dof : imposed_) q[static_cast<std::size_t>(dof)] = 0.0;
+        const double pq = dot(p, q);
+        if (!(pq > 0.0)) break;  // no stiffness along p: nothing more to gain
+        const double s = rz / pq;
+        add_scaled(d, s, p), add_scaled(r, -s, q);
+        out.norm = std::sqrt(weighted_square(r, inv_radius));
+        ++out.iterations;
+        precondition(r, z);
+        // The preconditioner rounds: beta from what r has changed by keeps the directions apart.
+        const double beta = -s * dot(z, q) / rz;
+        rz = dot(r, z);
+        for (std::size_t k = 0; k < p.size(); ++k) p[k] = z[k] + beta * p[k];
+    }
     return out;
 }
 

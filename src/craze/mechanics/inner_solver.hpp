@@ -1,4 +1,4 @@
-// The linear systems of equilibrium: preconditioned conjugate gradients in single precision.
+// The linear systems of equilibrium: preconditioned conjugate gradients in single precision, or in double.
 
 #pragma once
 
@@ -32,7 +32,13 @@ public:
     /// @param go_on  r is what was left after the last call: keep searching in the direction found then
     Result solve(std::span<const double> r, double target, std::int64_t most, bool go_on, std::span<double> d);
 
+    /// The same, every number but the preconditioner's in double precision: slower, for systems so soft in places that
+    /// single precision stalls.
+    Result solve_in_double(const Stiffness& stiffness, std::span<const double> r, double target, std::int64_t most,
+                           std::span<double> d);
+
 private:
+    void precondition(std::span<const double> r, std::span<double> z);
     void prepare(double rz);
 
     const Lattice& lattice_;

@@ -255,6 +255,49 @@ TEST(Equilibrium, OfASpecimenCutInTwoBearsNothing)
     EXPECT_LT(std::abs(face_force(find_face(lattice, 2, true), solved.forces.force)), 1e-6 * whole);
 }
 
+TEST(Equilibrium, IsTheSameInSingleAndInDoublePrecision)
+{
+    const Lattice lattice = make_lattice(cracked(3000, 2), {});
+    const auto at_rest = [&](bool single) {
+        return equilibrate(lattice, squeezed(lattice, 2e-3), rest_state(lattice),
+                           {.tolerance = 1e-9, .single = single});
+    };
+    const Equilibrium a = at_rest(true), b = at_rest(false);
+    EXPECT_EQ(a.in_double, 0);
+    EXPECT_EQ(b.in_double, b.iterations);
+    EXPECT_LE(a.residual, 1e-9);
+    EXPECT_LE(b.residual, 1e-9);
+    EXPECT_NEAR(a.forces.energy / b.forces.energy, 1.0, 1e-10);
+    EXPECT_EQ(a.forces.closed, b.forces.closed);
+}
+
+// Every third piece of a cantilever is a hundred times shorter than its neighbours, a million times stiffer: the last
+// digit of a displacement weighs more than the tolerance.
+TEST(Equilibrium, EndsInDoublePrecisionAtTheLastDigitWhereSingleStalls)
+{
+    constexpr std::int32_t pieces = 90;
+    std::vector<Vec3> at{{}};
+    std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
+    for (std::int32_t e = 0; e < pieces; ++e) {
+        at.push_back(at.back() + Vec3{e % 3 == 1 ? 0.01 : 1.0, 0.0, 0.0});
+        pairs.emplace_back(e, e + 1);
+    }
+    const double length = at.back().x;
+    const Lattice lattice = make_lattice(
+        support::bonded({length, 1.0, 1.0}, at, std::vector<double>(at.size(), 1.0), pairs), {200.0, 0.3, 0.3});
+    Constraints c;
+    for (int k = 0; k < 6; ++k) c.impose(0, k, 0.0);
+    c.impose(pieces, 1, 1.0);
+    const Equilibrium solved = equilibrate(lattice, c, rest_state(lattice), {.tolerance = 1e-8});
+    EXPECT_GT(solved.in_double, 0);
+    EXPECT_LT(solved.in_double, solved.iterations);
+    EXPECT_GT(solved.residual, 1e-8);
+    EXPECT_LT(solved.residual, 1e-5);
+    const double force = 3.0 * lattice.section.EI / std::pow(length, 3);
+    EXPECT_NEAR(-solved.forces.force[6 * pieces + 1] / force, 1.0, 1e-4);
+    EXPECT_NEAR(solved.state.rotation(pieces).z / (1.5 / length), 1.0, 1e-4);
+}
+
 TEST(SingleStiffness, AgreesWithDoublePrecisionAndGivesTheSameBitsOnAnyNumberOfThreads)
 {
     const Lattice lattice = make_lattice(cracked(3000, 2), {});
