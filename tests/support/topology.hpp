@@ -42,6 +42,23 @@ inline int components_of_slice(const Mask& mask, std::int64_t z, bool in, bool e
     return count;
 }
 
+/// Of the union of the closed pixels of slice z, 8-connected: pixels, edges and corners counted with alternating sign.
+inline std::int64_t euler_number_of_slice(const Mask& mask, std::int64_t z)
+{
+    const Shape s = mask.shape();
+    const auto pixel = [&](std::int64_t x, std::int64_t y) {
+        return x >= 0 && y >= 0 && x < s.nx && y < s.ny && mask(x, y, z);
+    };
+    std::int64_t sum = 0;
+    for (std::int64_t y = 0; y <= s.ny; ++y)
+        for (std::int64_t x = 0; x <= s.nx; ++x) {
+            const bool here = pixel(x, y), left = pixel(x - 1, y), above = pixel(x, y - 1);
+            sum += (here || left || above || pixel(x - 1, y - 1) ? 1 : 0) - (here || left ? 1 : 0) -
+                   (here || above ? 1 : 0) + (here ? 1 : 0);
+        }
+    return sum;
+}
+
 inline bool in(const Mask& m, std::int64_t x, std::int64_t y, std::int64_t z)
 {
     const Shape& s = m.shape();

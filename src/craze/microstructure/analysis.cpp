@@ -18,17 +18,19 @@ namespace {
 std::string objects_csv(const std::vector<Object>& objects)
 {
     std::string csv =
-        "label,volume_px3,surface_px2,equivalent_radius_px,inscribed_radius_px,sphericity,centroid_x_px,centroid_y_px,"
-        "centroid_z_px,semi_axis_a_px,semi_axis_b_px,semi_axis_c_px,major_x,major_y,major_z,minor_x,minor_y,minor_z,"
+        "label,volume_px3,surface_px2,equivalent_radius_px,inscribed_radius_px,mean_thickness_px,sphericity,"
+        "centroid_x_px,centroid_y_px,centroid_z_px,semi_axis_a_px,semi_axis_b_px,semi_axis_c_px,major_x,major_y,major_"
+        "z,minor_x,minor_y,minor_z,"
         "at_border\n";
     for (std::size_t k = 0; k < objects.size(); ++k) {
         const Object& o = objects[k];
         fmt::format_to(std::back_inserter(csv),
-                       "{},{},{:.2f},{:.4f},{:.4f},{:.4f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.5f},{:.5f},"
-                       "{:.5f},{:.5f},{:.5f},{:.5f},{}\n",
-                       k + 1, o.volume, o.surface, o.equivalent_radius, o.inscribed_radius, o.sphericity, o.centroid.x,
-                       o.centroid.y, o.centroid.z, o.semi_axes[0], o.semi_axes[1], o.semi_axes[2], o.major.x, o.major.y,
-                       o.major.z, o.minor.x, o.minor.y, o.minor.z, o.at_border ? 1 : 0);
+                       "{},{},{:.2f},{:.4f},{:.4f},{:.4f},{:.4f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.5f},"
+                       "{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{}\n",
+                       k + 1, o.volume, o.surface, o.equivalent_radius, o.inscribed_radius, o.mean_thickness,
+                       o.sphericity, o.centroid.x, o.centroid.y, o.centroid.z, o.semi_axes[0], o.semi_axes[1],
+                       o.semi_axes[2], o.major.x, o.major.y, o.major.z, o.minor.x, o.minor.y, o.minor.z,
+                       o.at_border ? 1 : 0);
     }
     return csv;
 }
@@ -107,9 +109,16 @@ Analysis analyse(const Microstructure& micro, const Settings& settings)
     a.profiles = porosity_profiles(micro);
     a.scatter = porosity_scatter(micro);
     const Volume<std::int32_t> squared = squared_distance(micro.matter);
-    a.pores = measured(micro.pore, components(micro.pore, settings.connectivity), squared);
-    a.cracks = measured(micro.crack, components(micro.crack, settings.connectivity), squared);
     const Thickness thickness = local_thickness(squared, settings.thickness_step);
+    const auto single = [&](const Mask& mask) {
+        const Components each = components(mask, settings.connectivity);
+        auto objects = measured(mask, each, squared);
+        const auto mean = mean_thickness(thickness, each);
+        for (std::size_t k = 0; k < objects.size(); ++k) objects[k].mean_thickness = mean[k];
+        return objects;
+    };
+    a.pores = single(micro.pore);
+    a.cracks = single(micro.crack);
     a.diameters = thickness.diameter;
     a.pore_thickness = thickness_histogram(thickness, micro.pore);
     a.crack_thickness = thickness_histogram(thickness, micro.crack);

@@ -20,6 +20,7 @@ struct Object {
     double equivalent_radius = 0.0;  ///< of the ball of this volume
     double sphericity = 0.0;         ///< surface of the ball of this volume / surface; meant for objects off the border
     double inscribed_radius = 0.0;   ///< largest distance of a voxel of it to matter, centre to centre [Fig. 7b]
+    double mean_thickness = 0.0;     ///< mean local thickness of its voxels; set by `analyse`
     Vec3 centroid;
     Vec3 major, minor;                  ///< unit vectors of the longest and shortest axis, z >= 0
     std::array<double, 3> semi_axes{};  ///< of the ellipsoid with these second moments, longest first

@@ -111,6 +111,26 @@ std::vector<std::int64_t> thickness_histogram(const Thickness& t, const Mask& pa
     return total;
 }
 
+std::vector<double> mean_thickness(const Thickness& t, const Components& found)
+{
+    std::vector<double> sum(static_cast<std::size_t>(found.count), 0.0);
+    std::vector<std::int64_t> voxels(sum.size(), 0);
+    const Shape& s = found.shape;
+    for (std::int64_t r = 0; r < s.ny * s.nz; ++r) {
+        const auto level = t.level.row(r % s.ny, r / s.ny);
+        for (auto i = found.row_begin[static_cast<std::size_t>(r)];
+             i < found.row_begin[static_cast<std::size_t>(r) + 1]; ++i) {
+            const Run& run = found.runs[static_cast<std::size_t>(i)];
+            const auto label = static_cast<std::size_t>(run.label);
+            voxels[label] += run.length();
+            for (std::int32_t x = run.first; x <= run.last; ++x)
+                sum[label] += t.diameter[level[static_cast<std::size_t>(x)]];
+        }
+    }
+    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] /= static_cast<double>(voxels[k]);
+    return sum;
+}
+
 double thickness_quantile(const Thickness& t, const std::vector<std::int64_t>& histogram, double q)
 {
     const std::int64_t all = std::accumulate(histogram.begin(), histogram.end(), std::int64_t{0});

@@ -2,7 +2,7 @@
 
 #pragma once
 
-#include "craze/core/mask.hpp"
+#include "craze/microstructure/labels.hpp"
 
 #include <cstdint>
 #include <vector>
@@ -22,6 +22,9 @@ Thickness local_thickness(const Volume<std::int32_t>& squared, double step);
 
 /// Voxels of `part` at each level of the thickness, shape of `diameter`.
 std::vector<std::int64_t> thickness_histogram(const Thickness& thickness, const Mask& part);
+
+/// Mean over the voxels of each component, px, shape (count,).
+std::vector<double> mean_thickness(const Thickness& thickness, const Components& components);
 
 /// The diameter that a share q of the voxels does not exceed; 0 for an empty histogram.
 double thickness_quantile(const Thickness& thickness, const std::vector<std::int64_t>& histogram, double q);

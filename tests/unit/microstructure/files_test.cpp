@@ -2,6 +2,7 @@
 
 #include "craze/core/errors.hpp"
 #include "craze/core/json.hpp"
+#include "craze/core/parallel.hpp"
 #include "craze/io/atomic_file.hpp"
 #include "craze/io/volume_file.hpp"
 #include "craze/microstructure/figures.hpp"
@@ -98,6 +99,40 @@ TEST_F(MicrostructureFiles, TheSummaryAddsUp)
     for (const char* name :
          {"histogram", "porosity_x", "porosity_y", "porosity_z", "porosity_scatter", "cracks", "thickness"})
         EXPECT_TRUE(std::filesystem::exists(folder / "microstructure" / (std::string(name) + ".csv"))) << name;
+}
+
+TEST_F(MicrostructureFiles, ThePoreTableHasAllThatIsMeasured)
+{
+    const Analysis analysis = analyse(micro, settings);
+    save(analysis, micro, folder / "microstructure");
+    const std::string csv = io::read_text(folder / "microstructure" / "pores.csv");
+    EXPECT_EQ(csv.substr(0, csv.find('\n')),
+              "label,volume_px3,surface_px2,equivalent_radius_px,inscribed_radius_px,mean_thickness_px,sphericity,"
+              "centroid_x_px,centroid_y_px,centroid_z_px,semi_axis_a_px,semi_axis_b_px,semi_axis_c_px,major_x,major_y,"
+              "major_z,minor_x,minor_y,minor_z,at_border");
+    for (std::size_t at = 0; at < csv.size(); at = csv.find('\n', at) + 1)
+        ASSERT_EQ(std::count(csv.begin() + static_cast<std::ptrdiff_t>(at),
+                             csv.begin() + static_cast<std::ptrdiff_t>(csv.find('\n', at)), ','),
+                  19);
+    for (const Object& o : analysis.pores) {
+        EXPECT_GE(o.mean_thickness, 1.0);
+        EXPECT_LE(o.mean_thickness, 2 * o.inscribed_radius);
+    }
+}
+
+TEST_F(MicrostructureFiles, TablesAreTheSameOnAnyNumberOfThreads)
+{
+    const std::vector<const char*> names{"histogram", "porosity_x",       "porosity_y", "porosity_z",
+                                         "pores",     "porosity_scatter", "cracks",     "thickness"};
+    for (const int threads : {1, 2}) {
+        set_threads(threads);
+        save(analyse(micro, settings), micro, folder / std::to_string(threads));
+    }
+    set_threads(0);
+    for (const char* name : names)
+        EXPECT_EQ(io::read_text(folder / "1" / (std::string(name) + ".csv")),
+                  io::read_text(folder / "2" / (std::string(name) + ".csv")))
+            << name;
 }
 
 }  // namespace

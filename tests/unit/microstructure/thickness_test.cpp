@@ -54,6 +54,24 @@ TEST(LocalThickness, OfAPlateIsItsThickness)
     }
 }
 
+TEST(MeanThickness, IsThatOfTheVoxelsOfEachObject)
+{
+    const Mask set = support::random_balls({40, 30, 24}, 9, 5.0, 3);
+    const Thickness t = local_thickness(squared_distance(complement(set)), 0.5);
+    const Components each = components(set);
+    const auto label = painted(each);
+    std::vector<double> sum(static_cast<std::size_t>(each.count), 0.0);
+    for (std::int64_t z = 0; z < 24; ++z)
+        for (std::int64_t y = 0; y < 30; ++y)
+            for (std::int64_t x = 0; x < 40; ++x)
+                if (set(x, y, z)) sum[static_cast<std::size_t>(label(x, y, z) - 1)] += t.diameter[t.level(x, y, z)];
+    const auto mean = mean_thickness(t, each);
+    const auto voxels = volumes(each);
+    ASSERT_GT(mean.size(), 1U);
+    ASSERT_EQ(mean.size(), sum.size());
+    for (std::size_t k = 0; k < sum.size(); ++k) EXPECT_NEAR(mean[k], sum[k] / static_cast<double>(voxels[k]), 1e-9);
+}
+
 TEST(LocalThickness, RefusesASetWithoutBoundAndASillyStep)
 {
     EXPECT_THROW(local_thickness(squared_distance(Mask({9, 9, 9})), 0.5), InvalidInput);
