@@ -1,4 +1,5 @@
 #include "craze/io/vtu_file.hpp"
+#include "craze/report/colour_bar.hpp"
 #include "craze/report/render.hpp"
 #include "craze/reproduce/figures.hpp"
 
@@ -47,9 +48,9 @@ Field drawn(const fs::path& file, int axis, Field field)
         scene.spheres.push_back({at, static_cast<double>(seen.radius[e]),
                                  report::viridis(std::clamp((along[e] - least) / span, 0.0, 1.0))});
     }
-    field.picture = report::render(scene, {1000, 750});
-    field.caption += fmt::format(" Displacement along {}: from {:.3g} nm (dark) to {:.3g} nm (yellow).", "xyz"[axis],
-                                 1e9 * least, 1e9 * most);
+    field.picture = report::with_colour_bar(report::render(scene, {1000, 750}),
+                                            {1e9 * least, 1e9 * (least + span), fmt::format("u_{} [nm]", "xyz"[axis])});
+    field.caption += fmt::format(" Colour: displacement along {}.", "xyz"[axis]);
     return field;
 }
 
