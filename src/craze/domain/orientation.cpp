@@ -105,7 +105,8 @@ namespace {
 /// All five points lie in one plane: seen along the axis from which the triangle has an area.
 bool meets_in_plane(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c)
 {
-    for (const auto& [u, v] : {std::array{0, 1}, std::array{1, 2}, std::array{2, 0}}) {
+    for (const int u : {0, 1, 2}) {
+        const int v = (u + 1) % 3;
         const int sense = turn(a, b, c, u, v);
         if (sense == 0) continue;
         const auto inside = [&](const Vec3& point) {

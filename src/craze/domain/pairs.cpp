@@ -35,7 +35,7 @@ Pairs pairs_within(const Elements& elements, const Vec3& box, double gap, bool p
     if (n == 0) return {};
     const double r_max = *std::ranges::max_element(elements.r);
     const Cells cells(box, 2.0 * r_max + gap, elements.x, elements.y, elements.z);
-    const auto [nx, ny, nz] = cells.count();
+    const auto count = cells.count();
 
     constexpr std::int64_t block = 4096;
     const std::int64_t blocks = (n + block - 1) / block;
@@ -47,9 +47,9 @@ Pairs pairs_within(const Elements& elements, const Vec3& box, double gap, bool p
             const Vec3 c = elements.centre(static_cast<std::int32_t>(i));
             const double r = elements.r[at(i)];
             found.clear();
-            for (const std::int32_t cz : around(cells.along(2, c.z), nz, periodic))
-                for (const std::int32_t cy : around(cells.along(1, c.y), ny, periodic))
-                    for (const std::int32_t cx : around(cells.along(0, c.x), nx, periodic))
+            for (const std::int32_t cz : around(cells.along(2, c.z), count[2], periodic))
+                for (const std::int32_t cy : around(cells.along(1, c.y), count[1], periodic))
+                    for (const std::int32_t cx : around(cells.along(0, c.x), count[0], periodic))
                         for (const std::int32_t j : cells.row(cx, cx + 1, cy, cz)) {
                             if (j <= i) continue;
                             Vec3 d = elements.centre(j) - c;

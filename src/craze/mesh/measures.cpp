@@ -67,7 +67,7 @@ Facets facets_of(const CrackSurface& surface, const Mask& crack, double h, const
             const auto corner = [&](std::size_t i) { return surface.vertices[static_cast<std::size_t>(k[i])]; };
             const auto normal = [&](std::size_t i) { return vec(normals[static_cast<std::size_t>(k[i])]); };
             Vec3 mean = normal(0);
-            for (const std::size_t i : {1, 2}) mean += dot(normal(i), normal(0)) < 0.0 ? -normal(i) : normal(i);
+            for (const std::size_t i : {1U, 2U}) mean += dot(normal(i), normal(0)) < 0.0 ? -normal(i) : normal(i);
             const Vec3 flat = 0.5 * cross(corner(1) - corner(0), corner(2) - corner(0));
             mean = norm(mean) > 0.0 ? normalized(mean) : Vec3{0.0, 0.0, 1.0};  // only where all triangles are flat
             facets.normal[t] = {static_cast<float>(mean.x), static_cast<float>(mean.y), static_cast<float>(mean.z)};

@@ -31,11 +31,11 @@ io::Picture drawn(std::int64_t width, std::int64_t height, ColourAt&& colour)
     for (std::int64_t y = 0; y < height; ++y)
         for (std::int64_t x = 0; x < width; ++x) {
             Rgb sum{};
-            for (int k = 0; k < 9; ++k) {
-                const Rgb c =
-                    colour(static_cast<double>(x) + (k % 3 + 0.5) / 3.0, static_cast<double>(y) + (k / 3 + 0.5) / 3.0);
-                for (std::size_t i = 0; i < 3; ++i) sum[i] += c[i] / 9.0;
-            }
+            for (const double down : {1.0, 3.0, 5.0})
+                for (const double across : {1.0, 3.0, 5.0}) {
+                    const Rgb c = colour(static_cast<double>(x) + across / 6.0, static_cast<double>(y) + down / 6.0);
+                    for (std::size_t i = 0; i < 3; ++i) sum[i] += c[i] / 9.0;
+                }
             for (std::size_t i = 0; i < 3; ++i) picture.at(x, y)[i] = static_cast<std::uint8_t>(std::lround(sum[i]));
         }
     return picture;

@@ -90,7 +90,7 @@ PorosityProfiles porosity_profiles(const Microstructure& micro)
     PorosityProfiles profiles;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::int64_t n = s[static_cast<int>(axis)];
-        const auto plane = static_cast<double>(s.voxels() / std::max<std::int64_t>(n, 1));
+        const double plane = static_cast<double>(s.voxels()) / static_cast<double>(std::max<std::int64_t>(n, 1));
         for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i)
             profiles.along[axis].push_back(
                 {static_cast<double>(pores[axis][i]) / plane, static_cast<double>(cracks[axis][i]) / plane});

@@ -37,11 +37,11 @@ std::string moduli(const Json& loading)
 {
     if (!loading.contains("moduli") || loading["moduli"].empty()) return "";
     std::string text = fmt::format("  {:<26} {:>8} {:>8} {:>8}\n", "Young's modulus, GPa", "x", "y", "z");
-    for (const auto& [specimen, m] : loading["moduli"].items())
+    for (const auto& item : loading["moduli"].items())
         for (const char* sense : {"tension", "compression"}) {
             const auto key = fmt::format("{}_Pa", sense);
-            const auto axis = [&](const char* a) { return shown(at(m, {key.c_str(), a}), 1e9, 1); };
-            text += fmt::format("    {:<24} {:>8} {:>8} {:>8}\n", fmt::format("{}, {}", specimen, sense), axis("x"),
+            const auto axis = [&](const char* a) { return shown(at(item.value(), {key.c_str(), a}), 1e9, 1); };
+            text += fmt::format("    {:<24} {:>8} {:>8} {:>8}\n", fmt::format("{}, {}", item.key(), sense), axis("x"),
                                 axis("y"), axis("z"));
         }
     return text;

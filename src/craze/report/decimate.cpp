@@ -96,16 +96,16 @@ CrackSurface decimated(const CrackSurface& surface, std::int64_t most)
     for (int step = 0; step < 24; ++step) {
         auto trial_rank = ranked_cells(surface.vertices, low, cell);
         auto trial = kept(surface, trial_rank);
-        if (count(trial) <= most) {
+        const auto left = count(trial);
+        if (left <= most) {
             enough = cell;
             rank = std::move(trial_rank), triangles = std::move(trial);
-            if (count(triangles) > most * 85 / 100 || (least > 0.0 && enough < 1.03 * least)) break;
+            if (left > most * 85 / 100 || (least > 0.0 && enough < 1.03 * least)) break;
         } else {
             least = cell;
         }
         if (enough == 0.0)
-            cell *=
-                std::clamp(1.02 * std::sqrt(static_cast<double>(count(trial)) / static_cast<double>(most)), 1.02, 3.0);
+            cell *= std::clamp(1.02 * std::sqrt(static_cast<double>(left) / static_cast<double>(most)), 1.02, 3.0);
         else
             cell = least > 0.0 ? 0.5 * (least + enough) : 0.7 * cell;
     }

@@ -82,12 +82,13 @@ void loading_rows(Headline& table, const Json& loading)
     }
     // Specimens of the reader's own ("both T1", "cracks 40 nm"): the paper has no number for them.
     const Json& moduli = find(loading, "moduli");
-    for (const auto& [specimen, values] : moduli.items()) {
+    for (const auto& item : moduli.items()) {
+        const std::string& specimen = item.key();
         if (specimen == "dense" || std::ranges::any_of(paper, [&](const Paper& p) { return p.specimen == specimen; }))
             continue;
         for (const char axis : {'x', 'y', 'z'})
             table.row(fmt::format("E<sub>{}</sub>, {} [GPa]", axis, escape(specimen)),
-                      find_number(values, {fmt::format("tension_Pa.{}", axis)}), giga, Origin::predicted);
+                      find_number(item.value(), {fmt::format("tension_Pa.{}", axis)}), giga, Origin::predicted);
     }
     for (const std::string specimen : {"pores", "cracks", "both"}) {
         const double ratio = specimen == "pores" ? 0.75 : specimen == "cracks" ? 0.46 : 0.29;

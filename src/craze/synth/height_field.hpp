@@ -28,8 +28,8 @@ struct HeightField {
     }
     std::array<double, 2> place(std::size_t i) const
     {
-        const auto k = static_cast<std::int64_t>(i);
-        return {(static_cast<double>(k % nx) + 0.5) * cell, (static_cast<double>(k / nx) + 0.5) * cell};
+        const auto k = static_cast<std::int64_t>(i), row = k / nx;
+        return {(static_cast<double>(k % nx) + 0.5) * cell, (static_cast<double>(row) + 0.5) * cell};
     }
     double distance(std::size_t i, std::size_t j) const
     {
