@@ -45,6 +45,8 @@ struct Settings {
     CountedVoid counted = CountedVoid::crack;
     double r_tilde = 0.345;  ///< R_B / R_DE of the cylinders in which cracks are measured [Eq. 3]
 
+    std::vector<std::int64_t> voxel_sizes{2, 4};  ///< multiples of the voxel at which thicknesses are studied [Fig. 16]
+
     /// A packing made elsewhere, instead of one made here (files.hpp).
     struct Import {
         std::string elements;  ///< file; empty: pack

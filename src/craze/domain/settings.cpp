@@ -27,6 +27,8 @@ void describe(Schema& schema, Settings& s)
                   "void that counts as crack opening in a bond: voxels of cracks, or all void [Eqs. 14, 15]");
     schema.number("r_tilde", s.r_tilde, {0.01, 1.0},
                   "radius over R_DE of the cylinder in which a bond's crack is measured [Eq. 3]");
+    schema.integers("voxel_sizes", s.voxel_sizes, {2, 64},
+                    "thicknesses also at these multiples of the voxel size, all made again there [Fig. 16]; []: not");
     schema.texts("write", s.write,
                  "write the porous, cracked domain too: csv, lammps, lammps_hybrid, yade, vtkhdf (folder specimen)");
     schema.group("import", "a packing made elsewhere instead of one made here", [&] {

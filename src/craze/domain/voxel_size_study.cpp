@@ -4,6 +4,7 @@
 #include "craze/core/json.hpp"
 #include "craze/core/parallel.hpp"
 #include "craze/domain/quality.hpp"
+#include "craze/io/atomic_file.hpp"
 
 #include <fmt/format.h>
 
@@ -12,63 +13,69 @@
 
 namespace craze::domain {
 
-microstructure::Microstructure coarsened(const microstructure::Microstructure& micro, std::int64_t factor)
+namespace {
+
+/// T1 and T2 of the bonds that are cut.
+void collect(const PairCracks& cracks, std::vector<double>& T1, std::vector<double>& T2)
 {
-    const Shape& fine = micro.crack.shape();
-    if (factor < 1 || factor > std::min({fine.nx, fine.ny, fine.nz}))
-        throw InvalidInput(fmt::format("voxel size study: needs factors from 1 to {}, got {}",
-                                       std::min({fine.nx, fine.ny, fine.nz}), factor));
+    for (std::size_t b = 0; b < cracks.cut.size(); ++b) {
+        if (cracks.cut[b] == 0) continue;
+        T1.push_back(cracks.T1[b]);
+        T2.push_back(cracks.T2[b]);
+    }
+}
+
+}  // namespace
+
+images::Gray coarsened(const images::Gray& gray, std::int64_t factor)
+{
+    const Shape& fine = gray.level.shape();
+    const std::int64_t most = std::min({fine.nx, fine.ny, fine.nz});
+    if (factor < 1 || factor > most)
+        throw InvalidInput(fmt::format("voxel sizes: needs factors from 1 to {}, got {}", most, factor));
     const Shape shape{fine.nx / factor, fine.ny / factor, fine.nz / factor};
-    microstructure::Microstructure out;
-    out.gray.level = Volume<std::uint8_t>(shape);
-    out.gray.voxel_size = micro.gray.voxel_size * static_cast<double>(factor);
-    out.threshold = micro.threshold;
-    out.matter = Mask(shape), out.pore = Mask(shape), out.crack = Mask(shape);
+    images::Gray out{Volume<std::uint8_t>(shape), gray.voxel_size * static_cast<double>(factor)};
     const std::int64_t block = factor * factor * factor;
     parallel_tasks(shape.nz, [&](std::int64_t z) {
-        for (std::int64_t y = 0; y < shape.ny; ++y)
-            for (std::int64_t x = 0; x < shape.nx; ++x) {
-                std::int64_t sum = 0, pores = 0;
-                for (std::int64_t c = z * factor; c < (z + 1) * factor; ++c)
-                    for (std::int64_t b = y * factor; b < (y + 1) * factor; ++b)
-                        for (std::int64_t a = x * factor; a < (x + 1) * factor; ++a) {
-                            sum += micro.gray.level(a, b, c);
-                            pores += micro.pore(a, b, c);
-                        }
-                const auto gray = static_cast<std::uint8_t>((sum + block / 2) / block);
-                out.gray.level(x, y, z) = gray;
-                const bool pore = 2 * pores >= block, crack = !pore && gray < out.threshold;
-                out.pore.set(x, y, z, pore);
-                out.crack.set(x, y, z, crack);
-                out.matter.set(x, y, z, !pore && !crack);
-            }
+        std::vector<std::int64_t> sum(static_cast<std::size_t>(shape.nx));
+        for (std::int64_t y = 0; y < shape.ny; ++y) {
+            std::ranges::fill(sum, 0);
+            for (std::int64_t c = z * factor; c < (z + 1) * factor; ++c)
+                for (std::int64_t b = y * factor; b < (y + 1) * factor; ++b) {
+                    const auto row = gray.level.row(b, c);
+                    for (std::size_t a = 0, x = 0; x < sum.size(); ++x)
+                        for (std::int64_t k = 0; k < factor; ++k, ++a) sum[x] += row[a];
+                }
+            const auto to = out.level.row(y, z);
+            for (std::size_t x = 0; x < sum.size(); ++x)
+                to[x] = static_cast<std::uint8_t>((sum[x] + block / 2) / block);
+        }
     });
     return out;
 }
 
 std::vector<VoxelSizeResult> voxel_size_study(const Discretisation& d, const microstructure::Microstructure& micro,
-                                              std::span<const std::int64_t> factors, double r_tilde,
-                                              CountedVoid counted)
+                                              std::span<const std::int64_t> factors,
+                                              const microstructure::Settings& classes, const mesh::Settings& sheets,
+                                              const Settings& settings)
 {
-    const Domain& dense = d.dense;
-    std::vector<VoxelSizeResult> study;
+    std::vector<VoxelSizeResult> study(1);
+    study[0].voxel_size = micro.gray.voxel_size, study[0].threshold = micro.threshold;
+    collect(d.bonds, study[0].T1, study[0].T2);
+    study[0].same_T1 = study[0].T1, study[0].same_T2 = study[0].T2;
     for (const std::int64_t factor : factors) {
-        PairCracks cracks;
-        cracks.cut = d.bonds.cut;
-        const double R_B = r_tilde * dense.mean_radius;
-        const auto measure = [&](const microstructure::Microstructure& at) {
-            measure_thickness(cracks, dense.elements, dense.bonds.i, dense.bonds.j, R_B, at, counted);
-        };
-        if (factor == 1)
-            measure(micro);
-        else
-            measure(coarsened(micro, factor));
-        VoxelSizeResult result{micro.gray.voxel_size * static_cast<double>(factor), {}, {}};
-        for (std::size_t b = 0; b < cracks.cut.size(); ++b) {
-            if (cracks.cut[b] == 0) continue;
-            result.T1.push_back(cracks.T1[b]);
-            result.T2.push_back(cracks.T2[b]);
-        }
+        microstructure::Settings there = classes;
+        there.R_C /= static_cast<double>(factor), there.R_E /= static_cast<double>(factor);
+        const auto coarse = microstructure::classify(coarsened(micro.gray, factor), there);
+        const auto surface = mesh::mesh_cracks(coarse.crack, coarse.gray.voxel_size, sheets);
+        VoxelSizeResult result{coarse.gray.voxel_size, coarse.threshold, {}, {}, {}, {}};
+        const Discretisation again = discretise(d.dense, coarse, surface, settings);
+        collect(again.bonds, result.T1, result.T2);
+        PairCracks same;
+        same.cut = d.bonds.cut;
+        measure_thickness(same, d.dense.elements, d.dense.bonds.i, d.dense.bonds.j,
+                          settings.r_tilde * d.dense.mean_radius, coarse, settings.counted);
+        collect(same, result.same_T1, result.same_T2);
         study.push_back(std::move(result));
     }
     return study;
@@ -76,8 +83,14 @@ std::vector<VoxelSizeResult> voxel_size_study(const Discretisation& d, const mic
 
 Json as_json(const std::vector<VoxelSizeResult>& study)
 {
-    constexpr double bar = 4e-9;
     constexpr std::size_t bars = 100;
+    double most = 0.0;
+    for (const VoxelSizeResult& r : study) {
+        std::vector<double> T1 = r.T1;
+        std::ranges::sort(T1);
+        if (!T1.empty()) most = std::max(most, T1[(995 * T1.size()) / 1000]);
+    }
+    const double bar = 4e-9 * std::max(1.0, std::ceil(most / (4e-9 * bars)));
     const auto one = [&](const std::vector<double>& T) {
         std::vector<std::int64_t> counts(bars, 0);
         std::int64_t zero = 0;
@@ -89,8 +102,20 @@ Json as_json(const std::vector<VoxelSizeResult>& study)
     };
     Json json = Json::array();
     for (const VoxelSizeResult& r : study)
-        json.push_back({{"voxel_size_m", r.voxel_size}, {"bar_m", bar}, {"T1", one(r.T1)}, {"T2", one(r.T2)}});
+        json.push_back({{"voxel_size_m", r.voxel_size},
+                        {"threshold", r.threshold},
+                        {"cut_bonds", r.T1.size()},
+                        {"bar_m", bar},
+                        {"T1", one(r.T1)},
+                        {"T2", one(r.T2)},
+                        {"same_bonds",
+                         {{"T1_median_m", five_numbers(r.same_T1)[2]}, {"T2_median_m", five_numbers(r.same_T2)[2]}}}});
     return json;
+}
+
+void save(const std::vector<VoxelSizeResult>& study, const std::filesystem::path& folder)
+{
+    io::write_text(folder / "voxel_sizes.json", as_json(study).dump(1) + "\n");
 }
 
 double expected_T2_of_slab(double T, double voxel_size, double matter, double empty, double threshold)

@@ -4,6 +4,7 @@
 #include "craze/core/hash.hpp"
 #include "craze/core/json.hpp"
 #include "craze/core/progress.hpp"
+#include "craze/domain/voxel_size_study.hpp"
 #include "craze/io/atomic_file.hpp"
 #include "craze/microstructure/figures.hpp"
 #include "craze/pipeline/headline.hpp"
@@ -99,13 +100,35 @@ Json do_mesh(Workspace& w, const fs::path& folder)
     return mesh::summary(*w.surface_, measures);
 }
 
+// Nothing that follows needs the study: where it fails the run goes on.
+void study_voxel_sizes(Workspace& w, const fs::path& folder)
+{
+    fs::remove(folder / "voxel_sizes.json");
+    if (w.s.domain.voxel_sizes.empty()) return;
+    const auto leave_out = [](const std::exception& error) {
+        notice(fmt::format("domain.voxel_sizes: the study is left out: {}", error.what()));
+    };
+    try {
+        domain::save(domain::voxel_size_study(*w.discretisation_, w.micro(), w.s.domain.voxel_sizes, w.s.microstructure,
+                                              w.s.mesh, w.s.domain),
+                     folder);
+    } catch (const InvalidInput& error) {
+        leave_out(error);
+    } catch (const ComputationFailed& error) {
+        leave_out(error);
+    }
+}
+
 Json do_domain(Workspace& w, const fs::path& folder)
 {
-    w.discretisation_ = w.s.without_images()
-                            ? domain::import_domain(w.s.domain)
-                            : domain::discretise(w.micro(), w.surface(), w.s.microstructure.R_C, w.s.domain);
+    if (w.s.without_images()) {
+        w.discretisation_ = domain::import_domain(w.s.domain);
+    } else {
+        w.discretisation_ = domain::discretise(w.micro(), w.surface(), w.s.microstructure.R_C, w.s.domain);
+        w.surface_.reset();
+        study_voxel_sizes(w, folder);
+    }
     w.micro_.reset();
-    w.surface_.reset();
     domain::save(*w.discretisation_, w.s.domain, folder);
     return domain::summary(*w.discretisation_);
 }

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace craze::report {
 
@@ -103,6 +104,42 @@ Figure thickness_figure(const domain::Discretisation& d)
     binary.x.pop_back();
     binary.mark = Mark::dashed;
     f.series.push_back(std::move(binary));
+    return f;
+}
+
+Figure voxel_size_figure(const Json& study)
+{
+    Figure f;
+    f.id = "voxel_sizes";
+    f.x.title = "crack thickness [nm]";
+    f.y.title = "contact beams [%]";
+    std::string medians;
+    int colour = 0;
+    for (const Json& at : study) {
+        const double all = at.value("cut_bonds", 0.0), bar = at.value("bar_m", 0.0) / nano;
+        if (!(all > 0.0)) continue;
+        const std::string size = fmt::format("{:.3g} nm", at.value("voxel_size_m", 0.0) / nano);
+        for (const auto& [key, name, mark] : {std::tuple{"T2", "T2", Mark::line}, {"T1", "T1", Mark::dashed}}) {
+            Series s{fmt::format("{}, voxels of {}", name, size), {}, {}, mark, colour};
+            for (const Json& count : at[key]["counts"]) {
+                s.x.push_back((static_cast<double>(s.x.size()) + 0.5) * bar);
+                s.y.push_back(100.0 * count.get<double>() / all);
+            }
+            f.series.push_back(std::move(s));
+        }
+        ++colour;
+        medians += fmt::format("; voxels of {}: {:.0f} bonds cut, medians T2 {:.3g}, T1 {:.3g} nm", size, all,
+                               at["T2"].value("median_m", 0.0) / nano, at["T1"].value("median_m", 0.0) / nano);
+    }
+    std::size_t shown = 0;  // bars up to the last that holds a thousandth
+    for (const Series& s : f.series)
+        for (std::size_t k = shown; k < s.y.size(); ++k)
+            if (s.y[k] > 0.1) shown = k + 1;
+    for (Series& s : f.series) s.x.resize(std::min(shown, s.x.size())), s.y.resize(s.x.size());
+    f.caption =
+        "Thickness of the crack in each cut bond where the stack is seen with coarser voxels and threshold, classes, "
+        "surface and cut bonds are made again" +
+        medians + ".";
     return f;
 }
 

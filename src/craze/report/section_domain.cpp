@@ -64,6 +64,11 @@ void write_domain(Work& work)
     auto thickness = thickness_figure(discretisation);
     thickness.paper = work.figure("Fig. 16");
     work.page.figure(thickness);
+    if (const auto file = work.folder.room("domain") / "voxel_sizes.json"; std::filesystem::is_regular_file(file)) {
+        auto sizes = voxel_size_figure(read_json(file));
+        sizes.paper = work.figure("Fig. 16");
+        if (!sizes.empty()) work.page.figure(sizes);
+    }
     work.page.figure(cardinalities(discretisation.dense));
     work.page.figure(bond_lengths(discretisation.dense));
     work.page.add("</div>");

@@ -163,8 +163,8 @@ void write_microstructure(Work& work)
             work.page.picture(fmt::format("microstructure_{}", path.stem().string()), io::read_text(path), caption,
                               work.figure(paper));
     };
-    picture("thresholds.png", "The middle slice segmented by each threshold.", "Fig. 4");
-    picture("phases.png", "The classification step by step.", "Fig. 6");
+    picture("thresholds.png", "Three slices segmented by each threshold; framed: the one used.", "Fig. 4");
+    picture("phases.png", "Three slices: gray levels, matter and void, pores (blue) and cracks (red).", "Fig. 6");
     picture("sweep_R_C.png", "The middle slice classified with each R_C = R_E.", "");
     picture("sweep_R_E.png", "The middle slice classified with each R_E.", "");
     end_room(work, "microstructure");

@@ -2,6 +2,7 @@
 
 #include "craze/core/errors.hpp"
 #include "craze/core/json.hpp"
+#include "craze/core/progress.hpp"
 #include "craze/core/random.hpp"
 #include "craze/domain/files.hpp"
 #include "craze/domain/quality.hpp"
@@ -76,56 +77,77 @@ TEST(SubVoxelSlab, ThinnerThanTheThresholdSeesIsLost)
     EXPECT_GT(expected_T2_of_slab(0.5, 1.0, 165, 45, 110), 0.0);
 }
 
-/// Bonds along x, y, z and between, all across a slab whose thickness is 6 voxels along x.
-Discretisation bonds_across(std::int64_t n, double L_0, double mean_radius)
+/// Bonds across the middle of a box of n^3, each of two elements of its own.
+Domain bonds_across(std::int64_t n, double L_0, double mean_radius)
 {
-    Discretisation d;
-    const double middle = 0.5 * static_cast<double>(n);
+    Domain d;
+    const double edge = static_cast<double>(n), middle = 0.5 * edge;
+    d.box = {edge, edge, edge};
     for (std::int32_t k = 0; k < 60; ++k) {
         Random random(4, static_cast<std::uint64_t>(k));
         const Vec3 c{middle + random.uniform(-2, 2), random.uniform(20, 44), random.uniform(20, 44)};
         const Vec3 t = normalized({1.0, random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5)});
         for (const double end : {-0.5, 0.5}) {
             const Vec3 p = c + end * L_0 * t;
-            d.dense.elements.x.push_back(p.x), d.dense.elements.y.push_back(p.y), d.dense.elements.z.push_back(p.z);
-            d.dense.elements.r.push_back(mean_radius);
+            d.elements.x.push_back(p.x), d.elements.y.push_back(p.y), d.elements.z.push_back(p.z);
+            d.elements.r.push_back(mean_radius);
         }
-        d.dense.bonds.i.push_back(2 * k), d.dense.bonds.j.push_back(2 * k + 1);
+        d.bonds.i.push_back(2 * k), d.bonds.j.push_back(2 * k + 1);
     }
-    d.dense.mean_radius = mean_radius;
-    d.bonds.cut.assign(60, 1);
+    d.bonds.kind.assign(60, BondKind::beam);
+    d.bonds.thickness.assign(60, 0.0);
+    d.mean_radius = mean_radius;
     return d;
 }
 
 TEST(VoxelSizeStudy, MovesTheIntensityThicknessLittleAndLetsTheBinaryGrow)  // [Fig. 16]
 {
-    const auto micro = slab(64, 30.3, 3.0, {170, 0, 165});
-    const auto d = bonds_across(64, 34.0, 17.0);
-    const auto study = voxel_size_study(d, micro, std::array<std::int64_t, 3>{1, 2, 4});
+    set_verbosity(Verbosity::quiet);
+    microstructure::Settings classes;
+    classes.threshold = microstructure::ThresholdMethod::fixed;
+    classes.level = 165;
+    const auto micro = microstructure::classify(slab(64, 30.3, 3.0, {170, 0, 165}).gray, classes);
+    const auto d = discretise(bonds_across(64, 34.0, 17.0), micro, mesh::mesh_cracks(micro.crack, 1.0, {}), {});
+    const auto study = voxel_size_study(d, micro, std::array<std::int64_t, 2>{2, 4}, classes, {}, {});
     ASSERT_EQ(study.size(), 3U);
     std::array<double, 3> T1{}, T2{};
-    for (std::size_t k = 0; k < 3; ++k) T1[k] = five_numbers(study[k].T1)[2], T2[k] = five_numbers(study[k].T2)[2];
-    EXPECT_DOUBLE_EQ(study[2].voxel_size, 4.0);
+    for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_EQ(study[k].T1.size(), 60U);
+        EXPECT_EQ(study[k].T2, study[k].same_T2);  // no bond is lost
+        EXPECT_DOUBLE_EQ(study[k].voxel_size, static_cast<double>(1U << k));
+        T1[k] = five_numbers(study[k].T1)[2], T2[k] = five_numbers(study[k].T2)[2];
+    }
     EXPECT_NEAR(T2[1] / T2[0], 1.0, 0.10);
     EXPECT_NEAR(T2[2] / T2[0], 1.0, 0.10);
     EXPECT_GT(T1[1], T1[0]);
     EXPECT_GT(T1[2], 1.2 * T1[0]);
     const Json json = as_json(study);
     EXPECT_EQ(json.size(), 3U);
-    EXPECT_THROW(coarsened(micro, 0), InvalidInput);
+    EXPECT_EQ(json[2]["cut_bonds"], 60);
+    EXPECT_THROW(coarsened(micro.gray, 0), InvalidInput);
+    EXPECT_THROW(coarsened(micro.gray, 65), InvalidInput);
 }
 
-TEST(Coarsened, KeepsThePoresAndTheMean)
+TEST(Coarsened, IsTheMeanOfEachBlockAndCutsOffTheRest)
 {
-    auto m = slab(8, 20, 1, {200, 0, 100});
-    for (std::int64_t z = 0; z < 4; ++z)
-        for (std::int64_t y = 0; y < 4; ++y)
-            for (std::int64_t x = 0; x < 4; ++x) m.pore.set(x, y, z, true), m.gray.level(x, y, z) = 10;
-    m.gray.level(7, 7, 7) = 120;
-    const auto coarse = coarsened(m, 2);
-    EXPECT_EQ(coarse.pore.count(), 8);
-    EXPECT_EQ(coarse.gray.level(3, 3, 3), 190);
-    EXPECT_EQ(coarse.matter.count() + coarse.pore.count() + coarse.crack.count(), 64);
+    images::Gray gray{Volume<std::uint8_t>(Shape{11, 8, 7}), 2.0};
+    Random random(8);
+    for (auto& g : gray.level.values()) g = static_cast<std::uint8_t>(random.below(256));
+    for (const std::int64_t factor : {1, 2, 3}) {
+        const auto coarse = coarsened(gray, factor);
+        const Shape s = coarse.level.shape();
+        EXPECT_EQ(s, (Shape{11 / factor, 8 / factor, 7 / factor}));
+        EXPECT_DOUBLE_EQ(coarse.voxel_size, 2.0 * static_cast<double>(factor));
+        for (std::int64_t z = 0; z < s.nz; ++z)
+            for (std::int64_t y = 0; y < s.ny; ++y)
+                for (std::int64_t x = 0; x < s.nx; ++x) {
+                    double sum = 0.0;
+                    for (std::int64_t k = 0; k < factor * factor * factor; ++k)
+                        sum += gray.level(x * factor + k % factor, y * factor + k / factor % factor,
+                                          z * factor + k / factor / factor);
+                    EXPECT_NEAR(coarse.level(x, y, z), sum / static_cast<double>(factor * factor * factor), 0.5);
+                }
+    }
 }
 
 TEST(ReferencePacking, IsImported)

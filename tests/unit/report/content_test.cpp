@@ -137,6 +137,32 @@ TEST(ThicknessFigure, CountsCutBondsWhoseEndsAreBothMatter)
     EXPECT_TRUE(thickness_figure(row(5)).empty());
 }
 
+TEST(VoxelSizeFigure, DrawsBothThicknessesAtEachVoxelSize)
+{
+    const auto one = [](double median, std::vector<int> counts) {
+        return Json{{"median_m", median}, {"zero", 0}, {"counts", std::move(counts)}};
+    };
+    const Json study{{{"voxel_size_m", 23.6e-9},
+                      {"cut_bonds", 4},
+                      {"bar_m", 4e-9},
+                      {"T1", one(9e-9, {0, 1, 3})},
+                      {"T2", one(5e-9, {1, 3, 0})}},
+                     {{"voxel_size_m", 47.2e-9},
+                      {"cut_bonds", 2},
+                      {"bar_m", 4e-9},
+                      {"T1", one(11e-9, {0, 0, 2})},
+                      {"T2", one(5e-9, {0, 2, 0})}}};
+    const auto f = voxel_size_figure(study);
+    ASSERT_EQ(f.series.size(), 4U);
+    EXPECT_EQ(f.series[0].y, (std::vector<double>{25, 75, 0}));
+    EXPECT_EQ(f.series[1].x, (std::vector<double>{2, 6, 10}));
+    EXPECT_EQ(f.series[3].y, (std::vector<double>{0, 0, 100}));
+    EXPECT_EQ(f.series[0].colour, f.series[1].colour);
+    EXPECT_NE(f.caption.find("47.2 nm: 2 bonds cut, medians T2 5, T1 11 nm"), std::string::npos) << f.caption;
+    EXPECT_TRUE(voxel_size_figure(Json::array()).empty());
+    EXPECT_TRUE(voxel_size_figure(Json()).empty());
+}
+
 TEST(ShareShown, IsTheLargestBoxThatHoldsNoMoreThanAsked)
 {
     const auto d = row(1000);
