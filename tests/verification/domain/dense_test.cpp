@@ -4,6 +4,7 @@
 #include "craze/domain/quality.hpp"
 #include "craze/domain/room.hpp"
 #include "craze/loading/rig.hpp"
+#include "support/data.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -65,6 +66,26 @@ TEST(Dense, IsTheSameMaterialAlongAllAxes)
     EXPECT_NEAR((E.box[0] + E.box[1] + E.box[2]) / 3 / 223.0, 1.0, 0.02);  // [Tables 1, 2]
     EXPECT_LT(spread(E.box), 0.025);
     EXPECT_LT(spread(E.side), 0.01);
+}
+
+// A packing made and loaded by two independent codes: 235.0 GPa over the box, 0.297 in the interior.
+TEST(ReferencePacking, ImportedAndLoadedAlongZIsAsStiffAsFoundElsewhere)
+{
+    const auto file = support::data_folder().parent_path() / "reference" / "packing_92k.txt.gz";
+    CRAZE_NEEDS_DATA(file);
+    Source source;
+    source.elements = file;
+    source.unit = 1e-6;
+    source.box = Vec3{17.6e-6, 13.2e-6, 21.2e-6};
+    loading::Loading tension;
+    tension.drive[2] = {false, 1.0};
+    tension.path = {1e-3};
+    const loading::Point p = loading::Rig(read_domain(source), {}, {}, {}).rest(tension).points.back();
+    const double E = p.stress.z / p.strain.z,
+                 nu = -0.5 * (p.interior_strain.x + p.interior_strain.y) / p.interior_strain.z;
+    std::cout << fmt::format("packing_92k: E {:.2f} GPa, nu {:.4f}\n", 1e-9 * E, nu);
+    EXPECT_NEAR(E / 235.0e9, 1.0, 0.005);
+    EXPECT_NEAR(nu / 0.297, 1.0, 0.005);
 }
 
 }  // namespace
