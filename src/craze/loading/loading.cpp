@@ -18,7 +18,7 @@
 namespace craze::loading {
 namespace {
 
-RigOptions rig_options(const Settings& s) { return {s.face_reach, s.interior_margin, s.contact_slack, s.residual}; }
+RigOptions rig_options(const Settings& s) { return {s.face_reach, s.interior_margin, s.residual}; }
 
 Calibration find_beams(const domain::Domain& dense, const Settings& s)
 {

@@ -49,7 +49,6 @@ struct Settings {
     std::vector<std::string> specimens{"dense", "pores", "cracks", "both"};
     double face_reach = 1.05;       ///< sides: centre within this many own radii of the wall
     double interior_margin = 10.0;  ///< interior: this many mean radii away from every wall
-    double contact_slack = 0.0;     ///< unbonded neighbours touch once nearer by this share of their distance [Eq. 5]
     double residual = 1e-6;         ///< of equilibrium, over the driving forces
 
     struct Moduli {

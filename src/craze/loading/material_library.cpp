@@ -54,8 +54,8 @@ mechanics::DenseMaterial find_material(const std::string& name, const std::files
 std::string calibration_recipe(const domain::Domain& dense, const mechanics::DenseMaterial& target, double nu_B,
                                const RigOptions& rig)
 {
-    const std::vector<double> numbers{dense.box.x, dense.box.y, dense.box.z,    dense.mean_radius,   target.E_D,
-                                      target.nu_D, nu_B,        rig.face_reach, rig.interior_margin, rig.contact_slack};
+    const std::vector<double> numbers{dense.box.x, dense.box.y, dense.box.z,    dense.mean_radius,  target.E_D,
+                                      target.nu_D, nu_B,        rig.face_reach, rig.interior_margin};
     const auto all = [](const auto& v) { return std::span(v.data(), v.size()); };
     Hash hash;
     hash.add("calibration 1").add(std::span<const double>(numbers));

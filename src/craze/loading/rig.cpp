@@ -31,22 +31,11 @@ bool is_uniaxial(const Loading& loading)
     return driven == 1 && loading.drive[static_cast<std::size_t>(loading.axis)].factor == 1.0;
 }
 
-/// Unbonded neighbours of the same intact body come nearer as it is compressed; beams already stand for that matter.
-domain::Domain with_slack(domain::Domain domain, double slack)
-{
-    for (std::size_t p = 0; p < domain.near.i.size(); ++p) {
-        const auto i = domain.near.i[p], j = domain.near.j[p];
-        const double distance = norm(domain.elements.centre(j) - domain.elements.centre(i));
-        domain.near.thickness[p] = std::min(distance, domain.near.thickness[p] + slack * distance);
-    }
-    return domain;
-}
-
 }  // namespace
 
 Rig::Rig(const domain::Domain& domain, const mechanics::BeamMaterial& beam, const mechanics::DenseMaterial& dense,
          const RigOptions& options)
-    : lattice_(mechanics::make_lattice(with_slack(domain, options.contact_slack), beam, dense.rho_D)),
+    : lattice_(mechanics::make_lattice(domain, beam, dense.rho_D)),
       dense_(dense),
       options_(options),
       fill_(domain.dense_volume / (domain.box.x * domain.box.y * domain.box.z)),

@@ -16,7 +16,6 @@ namespace craze::loading {
 struct RigOptions {
     double face_reach = 1.05;       ///< Settings::face_reach
     double interior_margin = 10.0;  ///< Settings::interior_margin
-    double contact_slack = 0.0;     ///< Settings::contact_slack
     double residual = 1e-6;         ///< Settings::residual
 };
 

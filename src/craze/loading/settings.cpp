@@ -112,8 +112,6 @@ void describe(Schema& schema, Settings& s)
                   "sides: elements whose centre lies within this many of their radii of the wall");
     schema.number("interior_margin", s.interior_margin, {0.0, 1e3},
                   "interior strain: elements this many mean radii away from every wall");
-    schema.quantity("contact_slack", s.contact_slack, Dimension::fraction, {0.0, 0.5},
-                    "neighbours without a bond touch once they are nearer by this share of their distance at rest");
     schema.number("residual", s.residual, {1e-12, 1e-2}, "residual of equilibrium over the driving forces");
     schema.group("moduli", "Young's moduli and Poisson's ratios at small strain [Table 3]", [&] {
         schema.flag("run", s.moduli.run, "measure them");
