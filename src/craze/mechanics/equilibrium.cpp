@@ -31,7 +31,7 @@ struct EquilibriumSolver::Work {
     std::vector<std::uint8_t> closed_at_setup;  ///< and those the preconditioner knows
     std::vector<std::int64_t> imposed;
     InnerSolver inner;
-    bool preconditioner_fits = false;
+    bool preconditioner_fits = false, springs_fit = false;
 
     std::vector<double> gap, opening, r, d, q;
 
@@ -63,7 +63,7 @@ void EquilibriumSolver::Work::take_kinds(const std::vector<domain::BondKind>& no
     inner.set_beams(*stiffness);
     contacts = unilateral_contacts(lattice, kind, options.free_contacts);
     gap.assign(contacts.i.size(), 0.0), opening.assign(contacts.i.size(), 0.0);
-    closed.assign(contacts.i.size(), 0);
+    closed.assign(contacts.i.size(), 0), closed_at_setup = closed;
     preconditioner_fits = false;
 }
 
@@ -89,20 +89,21 @@ bool EquilibriumSolver::Work::take_closed_set()
     if (!changed) return false;
     stiffness->set_springs(closed_springs(contacts, gap));
     inner.set_springs(stiffness->springs());
-    // A preconditioner may be a little out of date.
-    if (closed_at_setup.size() != closed.size()) preconditioner_fits = false;
-    if (!preconditioner_fits) return true;
+    // A soft piece that leans on a new contact is the worst of all that a preconditioner can be wrong about.
     std::int64_t different = 0;
     for (std::size_t c = 0; c < closed.size(); ++c) different += closed[c] != closed_at_setup[c];
-    preconditioner_fits = different * 200 < lattice.bonds();
+    springs_fit = different <= 4;
     return true;
 }
 
 void EquilibriumSolver::Work::set_up_preconditioner()
 {
-    inner.set_up_preconditioner(*stiffness, imposed);
+    if (preconditioner_fits)
+        inner.update_preconditioner(*stiffness);
+    else
+        inner.set_up_preconditioner(*stiffness, imposed);
     closed_at_setup = closed;
-    preconditioner_fits = true;
+    preconditioner_fits = springs_fit = true;
 }
 
 /// r = forces on the elements, zero where imposed; gap of every contact.
@@ -239,7 +240,7 @@ Equilibrium EquilibriumSolver::solve(const Constraints& constraints, State start
                 "iterations and {} changes of the closed contacts. Try smaller load steps, a looser tolerance or more "
                 "iterations; a specimen cut through by cracks may have nothing left to carry the load",
                 out.residual, w.options.tolerance, out.iterations, out.newton));
-        if (!w.preconditioner_fits) {
+        if (!w.preconditioner_fits || !w.springs_fit) {
             w.set_up_preconditioner();
             if (search == Search::going_on) search = Search::anew;
         }

@@ -23,6 +23,9 @@ public:
     /// @param imposed  degrees of freedom that do not move, ascending
     void set_up_preconditioner(const Stiffness& stiffness, std::span<const std::int64_t> imposed);
 
+    /// After springs have changed.
+    void update_preconditioner(const Stiffness& stiffness) { preconditioner_.update(lattice_, stiffness); }
+
     struct Result {
         std::int64_t iterations = 0;
         double norm = 0.0;  ///< of what the search believes to be left of r, N (moments over R)

@@ -118,8 +118,6 @@ CRAZE_MULTIVERSION void ascend_rows(const std::int32_t* parent, const float* arm
 
 void Multilevel::set_up(const Lattice& lattice, const Stiffness& stiffness, std::span<const std::int64_t> imposed)
 {
-    const BeamSection& section = stiffness.section();
-    const double R = lattice.mean_radius;
     elements_ = lattice.elements();
     const std::int64_t blocks = (elements_ + block_rows - 1) / block_rows;
     imposed_.assign(imposed.begin(), imposed.end());
@@ -131,6 +129,76 @@ void Multilevel::set_up(const Lattice& lattice, const Stiffness& stiffness, std:
     }
     for (std::size_t b = 1; b < imposed_first_.size(); ++b) imposed_first_[b] += imposed_first_[b - 1];
 
+    find_groups(lattice, stiffness.beams());
+    update(lattice, stiffness);
+}
+
+void Multilevel::find_groups(const Lattice& lattice, const Beams& beams)
+{
+    levels_.clear();
+    std::vector<std::int32_t> group_of(static_cast<std::size_t>(elements_));  // in the last level made
+    std::vector<Vec3> centres(group_of.size());                               // of its nodes
+    for (std::int32_t e = 0; e < lattice.elements(); ++e)
+        group_of[static_cast<std::size_t>(e)] = e, centres[static_cast<std::size_t>(e)] = lattice.centre(e);
+    // The top grows with the lattice so that its factor stays small beside the iterations.
+    const std::int64_t top = std::max<std::int64_t>(60, elements_ / 140);
+    const double R = lattice.mean_radius;
+    std::vector<std::int32_t> i, j;
+    for (std::int64_t size = 1; 2 * size <= top;) {
+        const std::int64_t factor = size == 1 ? 12 : top / size > 10 ? 6 : std::max<std::int64_t>(2, top / size);
+        i.clear(), j.clear();
+        for (std::size_t b = 0; b < static_cast<std::size_t>(beams.count); ++b) {
+            const std::int32_t from = group_of[static_cast<std::size_t>(beams.i[b])],
+                               to = group_of[static_cast<std::size_t>(beams.j[b])];
+            if (from != to) i.push_back(from), j.push_back(to);
+        }
+        std::vector<std::int64_t> members;
+        const auto nodes = static_cast<std::int64_t>(centres.size());
+        auto parent = grow_groups(graph_of(nodes, i, j), factor, size == 1 ? block_rows : nodes, members);
+        // A piece of matter that is one node already goes on as its own parent.
+        for (std::size_t k = 0; k < parent.size(); ++k)
+            if (parent[k] < 0 && size > 1) parent[k] = static_cast<std::int32_t>(members.size()), members.push_back(1);
+        std::vector<std::int32_t> of(group_of.size());
+        for (std::size_t e = 0; e < of.size(); ++e)
+            of[e] = group_of[e] < 0 ? -1 : parent[static_cast<std::size_t>(group_of[e])];
+        Aggregates groups = aggregates_of(lattice, std::move(of), std::ssize(members));
+        size *= factor;
+
+        Level level;
+        level.count = groups.count();
+        level.parent = std::move(parent);
+        level.arm.assign(4 * centres.size(), 0.0F);
+        for (std::size_t k = 0; k < centres.size(); ++k) {
+            if (level.parent[k] < 0) continue;
+            const Vec3 a = (centres[k] - groups.centre[static_cast<std::size_t>(level.parent[k])]) / R;
+            for (std::size_t c = 0; c < 3; ++c) level.arm[4 * k + c] = static_cast<float>(a[static_cast<int>(c)]);
+        }
+        level.load.assign(static_cast<std::size_t>(floats * level.count), 0.0F), level.answer = level.load;
+        group_of = groups.of, centres = groups.centre;
+        level.groups = std::move(groups);
+        levels_.push_back(std::move(level));
+    }
+    find_first_groups();
+}
+
+void Multilevel::find_first_groups()
+{
+    if (levels_.empty()) return;
+    const Level& level = levels_.front();
+    first_group_.assign(imposed_first_.size(), static_cast<std::int32_t>(level.count));
+    for (std::int64_t e = elements_ - 1; e >= 0; --e)
+        if (const std::int32_t g = level.groups.of[static_cast<std::size_t>(e)]; g >= 0) {
+            auto& first = first_group_[static_cast<std::size_t>(e / block_rows)];
+            first = std::min(first, g);
+        }
+    for (std::size_t b = first_group_.size() - 1; b > 0; --b)
+        first_group_[b - 1] = std::min(first_group_[b - 1], first_group_[b]);
+}
+
+void Multilevel::update(const Lattice& lattice, const Stiffness& stiffness)
+{
+    const BeamSection& section = stiffness.section();
+    const double R = lattice.mean_radius;
     std::vector<double> whole(static_cast<std::size_t>(36 * elements_), 0.0);
     stiffness.diagonal(whole);
     make_dimensionless(whole, section.EA, R);
@@ -148,74 +216,18 @@ void Multilevel::set_up(const Lattice& lattice, const Stiffness& stiffness, std:
             keep_inverse(block, inverse_.data() + 36 * e);
         }
     });
-
-    levels_.clear();
-    group_of_.resize(static_cast<std::size_t>(elements_));
-    centres_.resize(group_of_.size());
-    for (std::int32_t e = 0; e < lattice.elements(); ++e)
-        group_of_[static_cast<std::size_t>(e)] = e, centres_[static_cast<std::size_t>(e)] = lattice.centre(e);
-    // The top grows with the lattice so that its factor stays small beside the iterations.
-    const std::int64_t top = std::max<std::int64_t>(60, elements_ / 280);
-    const Beams& beams = stiffness.beams();
-    std::vector<std::int32_t> i, j;
-    for (std::int64_t size = 1; 2 * size <= top;) {
-        const std::int64_t factor = size == 1 ? 12 : top / size > 10 ? 6 : std::max<std::int64_t>(2, top / size);
-        i.clear(), j.clear();
-        for (std::size_t b = 0; b < static_cast<std::size_t>(beams.count); ++b) {
-            const std::int32_t from = group_of_[static_cast<std::size_t>(beams.i[b])],
-                               to = group_of_[static_cast<std::size_t>(beams.j[b])];
-            if (from != to) i.push_back(from), j.push_back(to);
-        }
-        std::vector<std::int64_t> members;
-        const auto nodes = static_cast<std::int64_t>(centres_.size());
-        auto parent = grow_groups(graph_of(nodes, i, j), factor, size == 1 ? block_rows : nodes, members);
-        // A piece of matter that is one node already goes on as its own parent.
-        for (std::size_t k = 0; k < parent.size(); ++k)
-            if (parent[k] < 0 && size > 1) parent[k] = static_cast<std::int32_t>(members.size()), members.push_back(1);
-        std::vector<std::int32_t> of(group_of_.size());
-        for (std::size_t e = 0; e < of.size(); ++e)
-            of[e] = group_of_[e] < 0 ? -1 : parent[static_cast<std::size_t>(group_of_[e])];
-        const Aggregates groups = aggregates_of(lattice, std::move(of), std::ssize(members));
-        size *= factor;
-
-        Level level;
-        level.count = groups.count();
-        level.parent = std::move(parent);
-        level.arm.assign(4 * centres_.size(), 0.0F);
-        for (std::size_t k = 0; k < centres_.size(); ++k) {
-            if (level.parent[k] < 0) continue;
-            const Vec3 a = (centres_[k] - groups.centre[static_cast<std::size_t>(level.parent[k])]) / R;
-            for (std::size_t c = 0; c < 3; ++c) level.arm[4 * k + c] = static_cast<float>(a[static_cast<int>(c)]);
-        }
-        level.load.assign(static_cast<std::size_t>(floats * level.count), 0.0F), level.answer = level.load;
-        levels_.push_back(std::move(level));
-        add_level(lattice, stiffness, whole, groups, 2 * size > top);
-    }
+    if (levels_.empty()) return;
+    for (std::size_t l = 0; l + 1 < levels_.size(); ++l) invert(levels_[l], lattice, stiffness, whole);
+    top_.resize(static_cast<std::size_t>(6 * levels_.back().count));
+    coarse_.set_up(lattice, stiffness, imposed_, levels_.back().groups);
 }
 
-/// Blocks of the groups of the last level, or the factor if it is the top.
-void Multilevel::add_level(const Lattice& lattice, const Stiffness& stiffness, std::span<const double> whole,
-                           const Aggregates& groups, bool top)
+/// Blocks of the groups of one level.
+void Multilevel::invert(Level& level, const Lattice& lattice, const Stiffness& stiffness, std::span<const double> whole)
 {
-    Level& level = levels_.back();
-    group_of_ = groups.of, centres_ = groups.centre;
-    if (levels_.size() == 1) {
-        first_group_.assign(imposed_first_.size(), static_cast<std::int32_t>(level.count));
-        for (std::int64_t e = elements_ - 1; e >= 0; --e)
-            if (const std::int32_t g = group_of_[static_cast<std::size_t>(e)]; g >= 0) {
-                auto& first = first_group_[static_cast<std::size_t>(e / block_rows)];
-                first = std::min(first, g);
-            }
-        for (std::size_t b = first_group_.size() - 1; b > 0; --b)
-            first_group_[b - 1] = std::min(first_group_[b - 1], first_group_[b]);
-    }
-    if (top) {
-        top_.resize(static_cast<std::size_t>(6 * level.count));
-        coarse_.set_up(lattice, stiffness, imposed_, groups);
-        return;
-    }
+    const Aggregates& groups = level.groups;
     std::vector<double> crossing(whole.size(), 0.0);
-    stiffness.diagonal(crossing, group_of_);
+    stiffness.diagonal(crossing, groups.of);
     make_dimensionless(crossing, stiffness.section().EA, lattice.mean_radius);
     level.inverse.assign(static_cast<std::size_t>(36 * level.count + floats), 0.0F);
     parallel_ranges(level.count, [&](std::int64_t begin, std::int64_t end) {

@@ -21,6 +21,8 @@ class Multilevel {
 public:
     /// @param imposed  degrees of freedom that do not move, ascending
     void set_up(const Lattice& lattice, const Stiffness& stiffness, std::span<const std::int64_t> imposed);
+    /// The same groups, other springs.
+    void update(const Lattice& lattice, const Stiffness& stiffness);
 
     /// z = D^-1 r of the elements of one block, and the loads of the groups of its first level. Gives r . (what both
     /// levels answer).
@@ -36,16 +38,16 @@ private:
         std::vector<float> arm;                   ///< from the parent's centre to the node, R, shape (nodes below, 4)
         std::vector<float> inverse;               ///< shape (nodes, 6, 6); of the top level none
         mutable std::vector<float> load, answer;  ///< shape (nodes, 8)
+        Aggregates groups;                        ///< of elements
         std::int64_t count = 0;
     };
-    void add_level(const Lattice& lattice, const Stiffness& stiffness, std::span<const double> whole,
-                   const Aggregates& groups, bool top);
+    void find_groups(const Lattice& lattice, const Beams& beams);
+    void find_first_groups();
+    void invert(Level& level, const Lattice& lattice, const Stiffness& stiffness, std::span<const double> whole);
 
     std::int64_t elements_ = 0;
     std::vector<float> inverse_;  ///< of elements, shape (n, 6, 6)
     std::vector<Level> levels_;
-    std::vector<Vec3> centres_;              ///< of the nodes of the last level made, m
-    std::vector<std::int32_t> group_of_;     ///< of elements, in that level
     std::vector<std::int32_t> first_group_;  ///< of the first level, per block
     std::vector<std::uint8_t> held_;         ///< bit c: number c of the element is imposed
     std::vector<std::int64_t> imposed_;
