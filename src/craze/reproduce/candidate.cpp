@@ -176,34 +176,74 @@ Numbers numbers_of(const domain::Discretisation& discretisation, const loading::
     return numbers;
 }
 
-Candidate measure(const synth::Settings& recipe, const Bench& bench, const Study& study, const Keep& keep)
+namespace {
+
+/// The coating put into the bench's packing as the study sees it.
+domain::Discretisation discretised(const synth::Coating& coating, const synth::Settings& recipe, const Bench& bench,
+                                   const Study& study)
 {
-    const synth::Coating coating = synth::make_coating(recipe);
     synth::Sight sight =
         study.as_seen ? synth::Sight(recipe.microscope, recipe.voxel_size, study.threshold) : synth::Sight();
     if (study.as_seen) {
         sight.rim = 2.0 * recipe.voxel_size;
         sight.margin = R_E;
     }
-    const double R_B = bench.calibration.beam.r_tilde * bench.R_DE;
-    Candidate out;
-    out.discretisation = synth::discretise(coating, bench.dense, R_B, sight);
-    out.response = kept_load(out.discretisation, laboratory(study, bench.calibration), "elastic", keep);
+    return synth::discretise(coating, bench.dense, bench.calibration.beam.r_tilde * bench.R_DE, sight);
+}
+
+/// Every loading of a study, each kept under `prefix` and its name.
+loading::Response load_all(const domain::Discretisation& discretisation, const Bench& bench, const Study& study,
+                           const std::string& prefix, const Keep& keep)
+{
+    auto all = kept_load(discretisation, laboratory(study, bench.calibration), prefix + "elastic", keep);
     for (const auto& fracture : fracture_laboratories(study, bench.calibration)) {
-        const auto name = fmt::format("{}_{:g}_GPa", fracture.fracture.cycles.empty() ? "fracture" : "cycles",
+        const auto name = fmt::format("{}{}_{:g}_GPa", prefix, fracture.fracture.cycles.empty() ? "fracture" : "cycles",
                                       1e-9 * fracture.fracture.strengths.front());
-        auto more = kept_load(out.discretisation, fracture, name, keep);
-        std::move(more.curves.begin(), more.curves.end(), std::back_inserter(out.response.curves));
-        std::move(more.strengths.begin(), more.strengths.end(), std::back_inserter(out.response.strengths));
-        out.response.seconds += more.seconds;
+        auto more = kept_load(discretisation, fracture, name, keep);
+        std::move(more.curves.begin(), more.curves.end(), std::back_inserter(all.curves));
+        std::move(more.strengths.begin(), more.strengths.end(), std::back_inserter(all.strengths));
+        all.seconds += more.seconds;
     }
-    out.response.calibration = bench.calibration;
+    all.calibration = bench.calibration;
+    return all;
+}
+
+}  // namespace
+
+Candidate measure(const synth::Settings& recipe, const Bench& bench, const Study& study, const Keep& keep)
+{
+    const synth::Coating coating = synth::make_coating(recipe);
+    Candidate out;
+    out.discretisation = discretised(coating, recipe, bench, study);
+    out.response = load_all(out.discretisation, bench, study, "", keep);
     out.numbers = numbers_of(out.discretisation, out.response, study);
     const Vec3& size = coating.size;
     const auto porosity = synth::porosity(coating, std::cbrt(size.x * size.y * size.z) / 192.0);
     out.numbers["porosity.total"] = 100.0 * porosity.total;
     out.numbers["porosity.pores"] = 100.0 * porosity.pores;
     out.numbers["porosity.cracks"] = 100.0 * porosity.cracks;
+    return out;
+}
+
+std::vector<Opening> by_opening(const synth::Settings& recipe, const Bench& bench, const Study& study,
+                                const std::vector<double>& factors, const Keep& keep)
+{
+    Study narrow = study;
+    narrow.specimens = {"both"};
+    narrow.uniaxial_points = 0;
+    narrow.triaxial_points = std::min<std::int64_t>(5, study.triaxial_points);
+    narrow.closed = false;
+    narrow.thicknesses.clear();
+    narrow.cycles.clear();
+    const auto discretisation = discretised(synth::make_coating(recipe), recipe, bench, study);
+    std::vector<Opening> out;
+    for (const double factor : factors) {
+        auto opened = discretisation;
+        for (auto* pairs : {&opened.bonds, &opened.near})
+            for (auto& T : pairs->T2) T *= factor;
+        const auto response = load_all(opened, bench, narrow, fmt::format("openings_{:g}_", factor), keep);
+        out.push_back({factor, numbers_of(opened, response, narrow)});
+    }
     return out;
 }
 

@@ -168,6 +168,27 @@ Figure strengths(const Reproduction& result)
     return f;
 }
 
+/// UCS/UTS against K at eta = 1.5 % as all openings shrink: where the paper's pair lies is not on the way.
+Figure openings(const std::vector<Opening>& tried)
+{
+    Figure f = blank("openings_ratio", "Table 4, Fig. 21b", "K at eta = 1.5 %, pores and cracks [GPa]", "UCS/UTS",
+                     "All openings of the first seed times one factor, from open cracks (left) to closed ones; point: "
+                     "the paper.");
+    Series line{"ours", {}, {}, Mark::line, 0}, points{"", {}, {}, Mark::points, 0};
+    for (const auto& [factor, n] : tried) {
+        const auto K = n.find("K.end");
+        const auto ratio =
+            std::find_if(n.begin(), n.end(), [](const auto& e) { return e.first.starts_with("UCS/UTS"); });
+        if (K == n.end() || ratio == n.end()) continue;
+        line.x.push_back(K->second), line.y.push_back(ratio->second);
+    }
+    points.x = line.x, points.y = line.y;
+    if (line.x.empty()) return f;
+    f.series = {
+        line, points, {"paper, 10 GPa", {target("K.end").paper}, {target("UCS/UTS.10").paper}, Mark::points, 1}};
+    return f;
+}
+
 }  // namespace
 
 std::vector<Figure> figures(const Reproduction& result)
@@ -179,6 +200,7 @@ std::vector<Figure> figures(const Reproduction& result)
     add_triaxial(curves, out);
     add_fracture(curves, out);
     out.push_back(strengths(result));
+    out.push_back(openings(result.openings));
     std::erase_if(out, [](const Figure& figure) { return figure.empty(); });
     return out;
 }

@@ -54,6 +54,19 @@ std::string page(const Reproduction& result)
     md += fmt::format(
         "\nPores only, theory at our p_DE: Eq. 18 gives {:.1f} GPa, the Hashin-Shtrikman bound {:.1f} GPa.\n",
         result.E_eq18, result.E_bound);
+    if (result.openings.empty()) return md;
+    md +=
+        "\nAll openings of the first seed times a factor (0: closed):\n\n| factor | T2, median [nm] | K at eta = 0 | "
+        "K at eta = 1.5 % | UTS | UCS | UCS/UTS |\n|---|---|---|---|---|---|---|\n";
+    for (const auto& [factor, n] : result.openings) {
+        const auto cell = [&numbers = n](std::string_view begins) {
+            for (const auto& [key, value] : numbers)
+                if (key.starts_with(begins)) return fmt::format("{:.3g}", value);
+            return std::string("-");
+        };
+        md += fmt::format("| {:g} | {} | {} | {} | {} | {} | {} |\n", factor, cell("T2.median"), cell("K.start"),
+                          cell("K.end"), cell("UTS."), cell("UCS."), cell("UCS/UTS."));
+    }
     return md;
 }
 
@@ -75,9 +88,12 @@ Json summary(const Reproduction& result)
         if (const auto seen = result.images.find(t.key); seen != result.images.end())
             numbers[t.key]["by_images"] = seen->second;
     }
+    Json openings = Json::array();
+    for (const auto& [factor, n] : result.openings) openings.push_back({{"factor", factor}, {"numbers", n}});
     return {{"size", result.settings.size == Size::small ? "small" : "paper"},
             {"seeds", result.settings.seeds},
             {"numbers", numbers},
+            {"openings", openings},
             {"E_eq18_GPa", result.E_eq18},
             {"E_hashin_shtrikman_GPa", result.E_bound}};
 }

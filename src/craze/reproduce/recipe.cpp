@@ -9,11 +9,11 @@ synth::Settings recipe()
                    .shape = synth::CrackShape::wavy,
                    .radius = {1.6e-6, 0.35, 0.3e-6, 5e-6},
                    .elongation = 1.3,
-                   .normals = {0.345, 0.655, 0.0},
+                   .normals = {0.336, 0.664, 0.0},
                    .scatter = 0.25,
                    .aperture = {90e-9, 0.5, 1e-9, 500e-9},
-                   .density = 0.275,
-                   .porosity = 0.0262};
+                   .density = 0.286,
+                   .porosity = 0.0266};
     s.cracks[1] = {.name = "inter-splat cracks",
                    .shape = synth::CrackShape::bent,
                    .radius = {1.6e-6, 0.35, 0.3e-6, 5e-6},
@@ -22,7 +22,7 @@ synth::Settings recipe()
                    .normals = {0.0, 0.0, 1.0},
                    .scatter = 0.25,
                    .aperture = {90e-9, 0.5, 1e-9, 500e-9},
-                   .density = 0.040,
+                   .density = 0.042,
                    .porosity = 0.0039};
     return s;
 }

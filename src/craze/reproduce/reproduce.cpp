@@ -48,6 +48,7 @@ std::string key_of(synth::Settings recipe, const Settings& settings, std::int64_
     s.images = false;
     s.search = 21;
     s.fitted.clear();
+    s.openings.clear();
     s.cycles = seed == settings.seeds.front() ? s.cycles : std::vector<double>{};
     return Hash().add(version).add(text(recipe)).add(text(s)).digest();
 }
@@ -115,6 +116,8 @@ void describe(Schema& schema, Settings& s)
     schema.number("damping", s.damping, {0, 1e3}, "mass damping of fracture loadings, times the reference");
     schema.quantities("cycles", s.cycles, Dimension::fraction, {-0.2, 0.2},
                       "peaks of strain at the first strength, first seed only; none: no cycles");
+    schema.quantities("openings", s.openings, Dimension::fraction, {0, 100},
+                      "all openings times each of these, first seed: UCS/UTS beside K; 0 is closed, none: not run");
     schema.flag("near_contacts", s.near_contacts, "let unbonded neighbours push in states of rest");
     schema.texts("fitted", s.fitted, "numbers that the recipe was fitted to");
 }
@@ -156,6 +159,11 @@ Reproduction reproduce(const synth::Settings& recipe, const Settings& settings, 
         Candidate candidate = measure(coating, bench, mine, keep);
         out.seeds.push_back(std::move(candidate.numbers));
         out.curves.push_back(std::move(candidate.response));
+        if (first && !settings.openings.empty()) {
+            say("reproduce: the first seed with other openings");
+            mine.strengths.resize(std::min<std::size_t>(1, mine.strengths.size()));
+            out.openings = by_opening(coating, bench, mine, settings.openings, keep);
+        }
         if (first && settings.images) {
             say("reproduce: the first seed by images");
             out.images = by_images(coating, bench, study, settings.search, place);

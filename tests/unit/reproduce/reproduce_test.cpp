@@ -152,16 +152,25 @@ TEST(Reproduction, GoesOnFromWhatIsDoneAndWritesItsPages)
     EXPECT_TRUE(first.numbers.contains("UCS/UTS.30"));
     EXPECT_EQ(first.response.curves.size(), again.response.curves.size());
 
+    // The same cracks closed: no thickness is left, and they are stiffer from the start.
+    const auto openings = by_opening(recipe, bench, study, {0.0}, keep);
+    ASSERT_EQ(openings.size(), 1U);
+    EXPECT_EQ(openings[0].numbers.at("T2.most"), 0.0);
+    EXPECT_GT(openings[0].numbers.at("K.start"), 1.1 * first.numbers.at("K.start"));
+    EXPECT_TRUE(openings[0].numbers.contains("UCS/UTS.30"));
+
     Reproduction result;
     result.settings.seeds = {1};
     result.seeds = {first.numbers};
     result.curves = {first.response};
+    result.openings = openings;
     save(result, folder);
-    for (const char* file :
-         {"reproduction.md", "reproduction.json", "fig18_stress_strain.svg", "fig21_bulk.svg", "fig23_stress.svg",
-          "fig25_cycles.svg", "table4_strengths.svg", "fig19_compression_y.png", "fig24_tension.png", "figures.json"})
+    for (const char* file : {"reproduction.md", "reproduction.json", "fig18_stress_strain.svg", "fig21_bulk.svg",
+                             "fig23_stress.svg", "fig25_cycles.svg", "table4_strengths.svg", "openings_ratio.svg",
+                             "fig19_compression_y.png", "fig24_tension.png", "figures.json"})
         EXPECT_TRUE(std::filesystem::exists(folder / file)) << file;
     EXPECT_NE(page(result).find("pores and cracks"), std::string::npos);
+    EXPECT_NE(page(result).find("times a factor"), std::string::npos);
     std::filesystem::remove_all(folder);
 }
 
