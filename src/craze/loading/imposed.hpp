@@ -39,6 +39,7 @@ struct Loading {
 
     double strength =
         std::numeric_limits<double>::infinity();  ///< sigma_failure, Pa; infinite: bonds never break [Eq. 24]
+    double bending_share = 1.0;  ///< of the bending stress that counts towards the strength; 1 as printed [Eq. 24]
     /// Motion, wave crossings of the axial edge, > 0: duration of the whole path or, where bonds can break, of a strain
     /// of sigma_failure / E_B.
     double crossings = 40.0;

@@ -80,6 +80,7 @@ struct Settings {
         double crossings = 40.0;     ///< wave crossings of the specimen per strain of sigma_failure / E_B
         double local_damping = 0.1;  ///< beta, share of the force out of balance that opposes motion
         double damping = 0.0;        ///< mass damping beside it, times 0.4 (2 pi c / L)
+        double bending_share = 1.0;  ///< of the bending stress of a beam that counts towards its strength [Eq. 24]
         double stop_drop = 0.5;
         std::int64_t points = 200;
         std::int64_t halvings = 0;   ///< run again at a half, a quarter, ... of the rate: how far strength moves

@@ -46,6 +46,7 @@ public:
         full_rate_ = length / (loading.crossings * crossing_);
         motion_options_.geometry = options.geometry;
         motion_options_.strength = loading.strength;
+        motion_options_.bending_share = loading.bending_share;
         motion_options_.local_damping = loading.local_damping;
         motion_options_.damping = loading.damping * 0.4 * 2.0 * std::numbers::pi / crossing_;
     }
@@ -97,7 +98,7 @@ private:
     /// Largest Rankine stress of the beams over their strength.
     double stress_ratio(const mechanics::State& state) const
     {
-        const auto loads = born_loads(rig_.lattice(), state, rig_.fill());
+        const auto loads = born_loads(rig_.lattice(), state, rig_.fill(), loading_.bending_share);
         return static_cast<double>(*std::max_element(loads.rankine.begin(), loads.rankine.end())) / loading_.strength;
     }
 

@@ -30,6 +30,7 @@ void fields(V& v, Loading& t)
 {
     v("kind", t.kind), v("name", t.name), v("specimen", t.specimen), v("drive", t.drive), v("axis", t.axis);
     v("path", t.path), v("solver", t.solver), v("strength", t.strength), v("crossings", t.crossings);
+    v("bending_share", t.bending_share);
     v("local_damping", t.local_damping), v("damping", t.damping), v("stop_drop", t.stop_drop),
         v("stop_damage", t.stop_damage);
 }

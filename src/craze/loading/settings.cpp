@@ -153,6 +153,8 @@ void describe(Schema& schema, Settings& s)
                       "this share of the force out of balance on an element opposes its motion");
         schema.number("damping", s.fracture.damping, {0.0, 1e4},
                       "mass damping beside it, times 0.4 (2 pi c / L): drags, so strengths hang on the rate");
+        schema.number("bending_share", s.fracture.bending_share, {0.0, 1.0},
+                      "of a beam's bending stress, this share counts towards its strength [Eq. 24]; 1 as printed");
         schema.quantity("stop_drop", s.fracture.stop_drop, Dimension::fraction, open_share,
                         "stop after this fall of stress from its peak; 1: never");
         schema.integer("points", s.fracture.points, {2, 100000}, "points on each curve");
@@ -296,6 +298,7 @@ std::vector<Loading> plan(const Settings& s, const Vec3& box)
                         loading.crossings = s.fracture.crossings;
                         loading.local_damping = s.fracture.local_damping;
                         loading.damping = s.fracture.damping;
+                        loading.bending_share = s.fracture.bending_share;
                         loading.name =
                             fmt::format("{} {}", loading.name, format_quantity(strength, Dimension::pressure));
                         return loading;

@@ -37,7 +37,8 @@ std::vector<float> narrow(const std::vector<T>& values)
 
 }  // namespace
 
-BornLoads born_loads(const mechanics::Lattice& lattice, const mechanics::State& state, double fill)
+BornLoads born_loads(const mechanics::Lattice& lattice, const mechanics::State& state, double fill,
+                     double bending_share)
 {
     const auto m = static_cast<std::size_t>(lattice.bonds()), n = static_cast<std::size_t>(lattice.elements());
     BornLoads out;
@@ -61,8 +62,8 @@ BornLoads born_loads(const mechanics::Lattice& lattice, const mechanics::State& 
                 out.N[b] = static_cast<float>(beam.loads.N);
                 out.bending[b] = static_cast<float>(bending);
                 out.torque[b] = static_cast<float>(beam.loads.T);
-                out.rankine[b] =
-                    static_cast<float>(mechanics::rankine_stress(lattice.section, beam.loads.N, bending, beam.loads.T));
+                out.rankine[b] = static_cast<float>(
+                    mechanics::rankine_stress(lattice.section, beam.loads.N, bending, beam.loads.T, bending_share));
             } else {
                 const double thickness = lattice.kind[b] == domain::BondKind::beam ? 0.0 : lattice.thickness[b];
                 const double length = norm(span);
@@ -100,7 +101,7 @@ void write_state(const std::filesystem::path& file, const Rig& rig, const Moment
 {
     const auto& lattice = rig.lattice();
     const auto n = static_cast<std::size_t>(lattice.elements());
-    const auto loads = born_loads(lattice, moment.state, rig.fill());
+    const auto loads = born_loads(lattice, moment.state, rig.fill(), moment.loading.bending_share);
     std::vector<double> points(3 * n);
     std::vector<float> displacement(3 * n), rotation(3 * n), velocity;
     for (std::size_t e = 0; e < n; ++e) {

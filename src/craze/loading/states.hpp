@@ -23,7 +23,8 @@ struct BornLoads {
     std::vector<float> damage;  ///< of each element: share of its beams at rest that have broken
 };
 /// @param fill  volume of spheres over that of their cells in the dense packing
-BornLoads born_loads(const mechanics::Lattice& lattice, const mechanics::State& state, double fill);
+BornLoads born_loads(const mechanics::Lattice& lattice, const mechanics::State& state, double fill,
+                     double bending_share = 1.0);
 
 /// Points: radius, displacement, rotation, velocity (in motion), stress, damage. Lines: thickness, contact, broken,
 /// normal_force, bending_moment, torque, rankine_stress. Points are centres at rest: warp by displacement.

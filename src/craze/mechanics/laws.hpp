@@ -178,9 +178,10 @@ CRAZE_INLINE CorotationalBeam<Real> corotational_beam(const BeamSection& s, Real
 
 /// Rankine stress of a beam, Pa. [Eq. 24]
 /// @param N  normal force, N, signed     @param M_b  larger of the end bending moments, N m     @param T  torque, N m
-inline double rankine_stress(const BeamSection& s, double N, double M_b, double T)
+/// @param bending_share  of the bending stress that counts, MotionOptions::bending_share
+inline double rankine_stress(const BeamSection& s, double N, double M_b, double T, double bending_share = 1.0)
 {
-    const double sigma = N / s.area + std::abs(M_b) * s.R_B / s.I_B, tau = T * s.R_B / s.J_B;
+    const double sigma = N / s.area + bending_share * std::abs(M_b) * s.R_B / s.I_B, tau = T * s.R_B / s.J_B;
     return 0.5 * (sigma + std::sqrt(sigma * sigma + 4.0 * tau * tau));
 }
 

@@ -33,11 +33,12 @@ struct ChunkSums {
 void check_options(const MotionOptions& o)
 {
     if (!(o.step_fraction > 0.0 && o.step_fraction <= 2.0 && o.damping >= 0.0 && std::isfinite(o.damping) &&
-          o.local_damping >= 0.0 && o.local_damping < 1.0 && o.strength > 0.0))
+          o.local_damping >= 0.0 && o.local_damping < 1.0 && o.strength > 0.0 && o.bending_share >= 0.0 &&
+          o.bending_share <= 1.0))
         throw InvalidInput(fmt::format(
             "motion: needs a step fraction above 0, a damping of at least 0, a local damping in [0, 1) and a "
-            "positive strength, got {:g}, {:g} 1/s, {:g} and {:g} Pa",
-            o.step_fraction, o.damping, o.local_damping, o.strength));
+            "positive strength with a bending share in [0, 1], got {:g}, {:g} 1/s, {:g}, {:g} Pa and {:g}",
+            o.step_fraction, o.damping, o.local_damping, o.strength, o.bending_share));
 }
 
 }  // namespace
@@ -199,6 +200,7 @@ void Motion::Work::forces_of(Share& share, std::int64_t chunk, bool measuring)
     BondPass pass{
         options.geometry, share.begin * chunk_rows, share.end * chunk_rows, options.strength, measuring, 0.0, {}};
     if (measuring) pass.strength = INFINITY;
+    pass.bending_share = options.bending_share;
     add_bonds(lattice.section, bonds, first_bond(chunk), first_bond(chunk + 1), now.pose.data(), force.data(), pass);
     pass.energy += add_pairs(neighbours.active(), pair_first[c], pair_first[c + 1], lattice.contact_stiffness,
                              options.geometry, share.end * chunk_rows, now.pose.data(), force.data());

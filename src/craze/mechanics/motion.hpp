@@ -34,7 +34,10 @@ struct MotionOptions {
     /// (Cundall). Damps every mode alike, holds back no steady motion.
     double local_damping = 0.0;
     double strength = std::numeric_limits<double>::infinity();  ///< sigma_failure, Pa: beams break at or above [Eq. 24]
-    bool free_contacts = true;                                  ///< let unbonded elements touch [Eq. 5]
+    /// Share of the bending stress in sigma_N, [0, 1]. 1: Eq. 24 as printed. Less: the moment-contribution factor of
+    /// bonded-particle models (Potyondy, 45th US Rock Mech. Symp., ARMA 11-501, 2011), which raises UCS/UTS.
+    double bending_share = 1.0;
+    bool free_contacts = true;  ///< let unbonded elements touch [Eq. 5]
 };
 
 /// J, since the start. work = elastic + kinetic + damping + fracture - what there was at the start.

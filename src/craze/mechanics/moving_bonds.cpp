@@ -38,11 +38,11 @@ CRAZE_INLINE bool any(Mask m) { return (m[0] | m[1] | m[2] | m[3]) != 0; }
 struct FailureLaw {
     double tau_2_per_T_2, S, per_area, moment_per_sigma;
 
-    FailureLaw(const BeamSection& s, double strength)
+    FailureLaw(const BeamSection& s, double strength, double bending_share)
         : tau_2_per_T_2(s.R_B / s.J_B * (s.R_B / s.J_B) / strength),
           S(strength),
           per_area(1.0 / s.area),
-          moment_per_sigma(s.I_B / s.R_B)
+          moment_per_sigma(s.I_B / (s.R_B * std::max(bending_share, 1e-9)))
     {
     }
     /// @param bending_2  square of the larger end moment
@@ -61,7 +61,7 @@ CRAZE_INLINE void add_bonds_of(const BeamSection& section, const MovingBonds& bo
     const BeamSection s = section;
     const BondArrays at(bonds);
     const bool can_break = std::isfinite(pass.strength), measure = pass.measure;
-    const FailureLaw failure(s, pass.strength);
+    const FailureLaw failure(s, pass.strength, pass.bending_share);
     const std::int64_t low = pass.low, limit = pass.limit;
     const double per_EA = 0.5 / s.EA, per_GJ = 0.5 / s.GJ, per_EI = 1.0 / (6.0 * s.EI);
     for (std::int64_t b = begin; b < end; b += lanes) {

@@ -31,6 +31,7 @@ struct BondPass {
     bool measure = false;              ///< add up the elastic energy
     double energy = 0.0;               ///< out: J
     std::vector<std::int32_t> broken;  ///< out: beams that reached the strength
+    double bending_share = 1.0;        ///< MotionOptions::bending_share
 };
 
 /// What bonds [begin, end) add to the rows of `force` (n, 6), from rows of `pose` (n, 8). One function for all bonds:

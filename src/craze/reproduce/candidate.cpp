@@ -130,6 +130,7 @@ std::vector<loading::Settings> fracture_laboratories(const Study& study, const l
     quiet.fracture.run = true;
     quiet.fracture.crossings = study.crossings;
     quiet.fracture.damping = study.damping;
+    quiet.fracture.bending_share = study.bending_share;
     std::vector<loading::Settings> all;
     for (const double strength : study.strengths) {
         auto s = quiet;
@@ -225,16 +226,27 @@ Candidate measure(const synth::Settings& recipe, const Bench& bench, const Study
     return out;
 }
 
+namespace {
+
+/// Strengths of the specimen with pores and cracks and, with points, its K.
+Study narrowed(Study study, std::int64_t triaxial_points)
+{
+    study.specimens = {"both"};
+    study.moduli = study.closed = false;
+    study.uniaxial_points = 0;
+    study.triaxial_points = std::min(triaxial_points, study.triaxial_points);
+    study.thicknesses.clear();
+    study.cycles.clear();
+    return study;
+}
+
+}  // namespace
+
 std::vector<Opening> by_opening(const synth::Settings& recipe, const Bench& bench, const Study& study,
                                 const std::vector<double>& factors, const Keep& keep)
 {
-    Study narrow = study;
-    narrow.specimens = {"both"};
-    narrow.uniaxial_points = 0;
-    narrow.triaxial_points = std::min<std::int64_t>(5, study.triaxial_points);
-    narrow.closed = false;
-    narrow.thicknesses.clear();
-    narrow.cycles.clear();
+    if (factors.empty()) return {};
+    const Study narrow = narrowed(study, 5);
     const auto discretisation = discretised(synth::make_coating(recipe), recipe, bench, study);
     std::vector<Opening> out;
     for (const double factor : factors) {
@@ -243,6 +255,23 @@ std::vector<Opening> by_opening(const synth::Settings& recipe, const Bench& benc
             for (auto& T : pairs->T2) T *= factor;
         const auto response = load_all(opened, bench, narrow, fmt::format("openings_{:g}_", factor), keep);
         out.push_back({factor, numbers_of(opened, response, narrow)});
+    }
+    return out;
+}
+
+std::vector<BendingShare> by_bending_share(const synth::Settings& recipe, const Bench& bench, const Study& study,
+                                           const std::vector<double>& shares, const Keep& keep)
+{
+    if (shares.empty()) return {};
+    const auto discretisation = discretised(synth::make_coating(recipe), recipe, bench, study);
+    std::vector<BendingShare> out;
+    for (const double share : shares) {
+        Study narrow = narrowed(study, 0);
+        narrow.bending_share = share;
+        // Beams that bear more are strained further.
+        narrow.tension /= std::max(0.2, share), narrow.compression /= std::max(0.2, share);
+        const auto response = load_all(discretisation, bench, narrow, fmt::format("bending_{:g}_", share), keep);
+        out.push_back({share, numbers_of(discretisation, response, narrow)});
     }
     return out;
 }

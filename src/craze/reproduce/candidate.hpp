@@ -30,6 +30,7 @@ struct Study {
     double compression = 4.5e-3;        ///< and of a compression
     double crossings = 40.0;            ///< of fracture loadings: wave crossings per strain of sigma_failure / E_B
     double damping = 0.0;               ///< mass damping beside the local one
+    double bending_share = 1.0;         ///< of a beam's bending stress that counts towards its strength [Eq. 24]
     std::vector<double>
         cycles;  ///< peaks of strain of a cycled loading at the first strength; none: no cycles [Fig. 25]
     /// Let unbonded neighbours push [Eq. 5]. Our reading: off in states of rest. The paper's dense and porous samples
@@ -78,12 +79,20 @@ Numbers numbers_of(const domain::Discretisation& discretisation, const loading::
 /// The specimen with pores and cracks when all openings are `factor` times what they are; 0: closed cracks.
 struct Opening {
     double factor = 1.0;
-    Numbers numbers;  ///< T2, E along x, K and the strengths of the study
+    Numbers numbers;  ///< T2, K and the strengths of the study
 };
 /// What cannot be had together: open cracks are soft, closed ones make a specimen stronger in compression than in
 /// tension. By the short way, for each factor.
 std::vector<Opening> by_opening(const synth::Settings& recipe, const Bench& bench, const Study& study,
                                 const std::vector<double>& factors, const Keep& keep = {});
+
+/// The same specimen when only a share of a beam's bending stress counts towards its strength [Eq. 24].
+struct BendingShare {
+    double share = 1.0;
+    Numbers numbers;  ///< the strengths of the study
+};
+std::vector<BendingShare> by_bending_share(const synth::Settings& recipe, const Bench& bench, const Study& study,
+                                           const std::vector<double>& shares, const Keep& keep = {});
 
 /// The constant thickness whose P(eta) is nearest to the T2 curve of the cracks-only specimen, m: least squares,
 /// interpolated between the thicknesses tried. 0 where the response has no such curves. [4.2.3]

@@ -189,6 +189,29 @@ Figure openings(const std::vector<Opening>& tried)
     return f;
 }
 
+/// Strengths and their ratio against the share of bending that counts in Eq. 24.
+Figure bending(const std::vector<BendingShare>& tried)
+{
+    Figure f = blank("bending_share", "Table 4", "UTS [MPa]", "UCS/UTS",
+                     "The first seed when a falling share of the bending stress counts in Eq. 24, from 1 (left, as "
+                     "printed); point: the paper.");
+    Series line{"ours", {}, {}, Mark::line, 0}, points{"", {}, {}, Mark::points, 0};
+    for (const auto& [share, n] : tried) {
+        const auto begins = [&numbers = n](const char* with) {
+            return std::find_if(numbers.begin(), numbers.end(),
+                                [with](const auto& e) { return e.first.starts_with(with); });
+        };
+        const auto UTS = begins("UTS."), ratio = begins("UCS/UTS.");
+        if (UTS == n.end() || ratio == n.end()) continue;
+        line.x.push_back(UTS->second), line.y.push_back(ratio->second);
+    }
+    points.x = line.x, points.y = line.y;
+    if (line.x.empty()) return f;
+    f.series = {
+        line, points, {"paper, 10 GPa", {target("UTS.10").paper}, {target("UCS/UTS.10").paper}, Mark::points, 1}};
+    return f;
+}
+
 }  // namespace
 
 std::vector<Figure> figures(const Reproduction& result)
@@ -201,6 +224,7 @@ std::vector<Figure> figures(const Reproduction& result)
     add_fracture(curves, out);
     out.push_back(strengths(result));
     out.push_back(openings(result.openings));
+    out.push_back(bending(result.bending));
     std::erase_if(out, [](const Figure& figure) { return figure.empty(); });
     return out;
 }

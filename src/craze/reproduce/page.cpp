@@ -54,19 +54,25 @@ std::string page(const Reproduction& result)
     md += fmt::format(
         "\nPores only, theory at our p_DE: Eq. 18 gives {:.1f} GPa, the Hashin-Shtrikman bound {:.1f} GPa.\n",
         result.E_eq18, result.E_bound);
-    if (result.openings.empty()) return md;
-    md +=
-        "\nAll openings of the first seed times a factor (0: closed):\n\n| factor | T2, median [nm] | K at eta = 0 | "
-        "K at eta = 1.5 % | UTS | UCS | UCS/UTS |\n|---|---|---|---|---|---|---|\n";
-    for (const auto& [factor, n] : result.openings) {
-        const auto cell = [&numbers = n](std::string_view begins) {
-            for (const auto& [key, value] : numbers)
-                if (key.starts_with(begins)) return fmt::format("{:.3g}", value);
-            return std::string("-");
-        };
-        md += fmt::format("| {:g} | {} | {} | {} | {} | {} | {} |\n", factor, cell("T2.median"), cell("K.start"),
-                          cell("K.end"), cell("UTS."), cell("UCS."), cell("UCS/UTS."));
-    }
+    const auto cell = [](const Numbers& numbers, std::string_view begins) {
+        for (const auto& [key, value] : numbers)
+            if (key.starts_with(begins)) return fmt::format("{:.3g}", value);
+        return std::string("-");
+    };
+    if (!result.openings.empty())
+        md +=
+            "\nAll openings of the first seed times a factor (0: closed):\n\n| factor | T2, median [nm] | K at eta = 0 "
+            "| K at eta = 1.5 % | UTS | UCS | UCS/UTS |\n|---|---|---|---|---|---|---|\n";
+    for (const auto& [factor, n] : result.openings)
+        md += fmt::format("| {:g} | {} | {} | {} | {} | {} | {} |\n", factor, cell(n, "T2.median"), cell(n, "K.start"),
+                          cell(n, "K.end"), cell(n, "UTS."), cell(n, "UCS."), cell(n, "UCS/UTS"));
+    if (!result.bending.empty())
+        md +=
+            "\nA share of the bending stress in Eq. 24, first seed:\n\n| share | UTS | UCS | UCS/UTS | new contact "
+            "beams in tension | in compression |\n|---|---|---|---|---|---|\n";
+    for (const auto& [share, n] : result.bending)
+        md += fmt::format("| {:g} | {} | {} | {} | {} | {} |\n", share, cell(n, "UTS."), cell(n, "UCS."),
+                          cell(n, "UCS/UTS"), cell(n, "new.tension"), cell(n, "new.compression"));
     return md;
 }
 
@@ -88,12 +94,14 @@ Json summary(const Reproduction& result)
         if (const auto seen = result.images.find(t.key); seen != result.images.end())
             numbers[t.key]["by_images"] = seen->second;
     }
-    Json openings = Json::array();
+    Json openings = Json::array(), bending = Json::array();
+    for (const auto& [share, n] : result.bending) bending.push_back({{"share", share}, {"numbers", n}});
     for (const auto& [factor, n] : result.openings) openings.push_back({{"factor", factor}, {"numbers", n}});
     return {{"size", result.settings.size == Size::small ? "small" : "paper"},
             {"seeds", result.settings.seeds},
             {"numbers", numbers},
             {"openings", openings},
+            {"bending", bending},
             {"E_eq18_GPa", result.E_eq18},
             {"E_hashin_shtrikman_GPa", result.E_bound}};
 }

@@ -32,6 +32,7 @@ Study study_of(const Settings& s)
     study.compression = s.compression;
     study.crossings = s.crossings;
     study.damping = s.damping;
+    study.bending_share = s.bending_share;
     study.cycles = s.cycles;
     study.near_contacts = s.near_contacts;
     return study;
@@ -49,6 +50,7 @@ std::string key_of(synth::Settings recipe, const Settings& settings, std::int64_
     s.search = 21;
     s.fitted.clear();
     s.openings.clear();
+    s.bending_shares.clear();
     s.cycles = seed == settings.seeds.front() ? s.cycles : std::vector<double>{};
     return Hash().add(version).add(text(recipe)).add(text(s)).digest();
 }
@@ -116,6 +118,10 @@ void describe(Schema& schema, Settings& s)
     schema.number("damping", s.damping, {0, 1e3}, "mass damping of fracture loadings, times the reference");
     schema.quantities("cycles", s.cycles, Dimension::fraction, {-0.2, 0.2},
                       "peaks of strain at the first strength, first seed only; none: no cycles");
+    schema.number("bending_share", s.bending_share, {0, 1},
+                  "of a beam's bending stress, this share counts towards its strength [Eq. 24]; 1 as printed");
+    schema.quantities("bending_shares", s.bending_shares, Dimension::fraction, {0, 1},
+                      "strengths of the first seed with each of these shares too; none: not run");
     schema.quantities("openings", s.openings, Dimension::fraction, {0, 100},
                       "all openings times each of these, first seed: UCS/UTS beside K; 0 is closed, none: not run");
     schema.flag("near_contacts", s.near_contacts, "let unbonded neighbours push in states of rest");
@@ -159,10 +165,11 @@ Reproduction reproduce(const synth::Settings& recipe, const Settings& settings, 
         Candidate candidate = measure(coating, bench, mine, keep);
         out.seeds.push_back(std::move(candidate.numbers));
         out.curves.push_back(std::move(candidate.response));
-        if (first && !settings.openings.empty()) {
-            say("reproduce: the first seed with other openings");
-            mine.strengths.resize(std::min<std::size_t>(1, mine.strengths.size()));
-            out.openings = by_opening(coating, bench, mine, settings.openings, keep);
+        if (first) {
+            Study one = mine;
+            one.strengths.resize(std::min<std::size_t>(1, one.strengths.size()));
+            out.openings = by_opening(coating, bench, one, settings.openings, keep);
+            out.bending = by_bending_share(coating, bench, one, settings.bending_shares, keep);
         }
         if (first && settings.images) {
             say("reproduce: the first seed by images");

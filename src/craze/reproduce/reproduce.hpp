@@ -32,7 +32,9 @@ struct Settings {
     double crossings = 40.0;  ///< of a fracture loading: wave crossings per strain of sigma_failure / E_B
     double damping = 0.0;     ///< mass damping beside the local one
     std::vector<double> cycles{-1e-3, -2e-3, -3e-3};          ///< peaks of strain, first seed only [Fig. 25]
+    double bending_share = 1.0;                               ///< see Study
     std::vector<double> openings;                             ///< factors for by_opening, first seed; none: not run
+    std::vector<double> bending_shares;                       ///< for by_bending_share, first seed; none: not run
     bool near_contacts = false;                               ///< see Study
     std::vector<std::string> fitted = FitSettings{}.targets;  ///< which numbers the recipe was fitted to
 };
@@ -47,7 +49,8 @@ struct Reproduction {
     Settings settings;
     std::vector<Numbers> seeds;             ///< by the short way
     std::vector<loading::Response> curves;  ///< of each seed
-    std::vector<Opening> openings;          ///< of the first seed, strengths at 10 GPa or the first asked for
+    std::vector<Opening> openings;          ///< of the first seed, at the first strength of bonds
+    std::vector<BendingShare> bending;      ///< likewise
     Numbers images;                         ///< first seed through the image chain; empty when not asked for
     double E_eq18 = 0.0, E_bound = 0.0;     ///< E for the pores alone at the mean p_DE: Eq. 18, Hashin-Shtrikman, GPa
     double seconds = 0.0;

@@ -71,6 +71,15 @@ TEST_F(Moving, WorkIsAccountedForToOnePercent)
         EXPECT_NEAR(p.elastic + p.kinetic + p.damped + p.fracture, p.work, 0.01 * c.points.back().work);
 }
 
+TEST_F(Moving, BreaksLaterTheLessBendingCounts)
+{
+    Loading l = tension(4e-3, 20, 10.0);
+    l.strength = 10e9;
+    const double printed = strength_of(move(*rig_, l)).strength;
+    l.bending_share = 0.5;
+    EXPECT_GT(strength_of(move(*rig_, l)).strength, 1.15 * printed);
+}
+
 TEST_F(Moving, StartsFromRestShortOfTheFirstBreak)
 {
     Loading l = tension(4e-3, 40, 20.0);

@@ -140,6 +140,8 @@ TEST(Rankine, IsTensionForPureTensionAndTheTorsionStressForPureTorsion)
     const double R3 = std::pow(section.R_B, 3);
     EXPECT_NEAR(rankine_stress(section, 0, 0, 1e-12) / (2e-12 / (std::numbers::pi * R3)), 1.0, 1e-14);
     EXPECT_NEAR(rankine_stress(section, 0, 1e-12, 0) / (4e-12 / (std::numbers::pi * R3)), 1.0, 1e-14);
+    EXPECT_NEAR(rankine_stress(section, 1e-3, 1e-12, 0, 0.25) / (1e-3 / A + 1e-12 / (std::numbers::pi * R3)), 1.0,
+                1e-14);
     // sigma = 3, tau = 2 in units of one Pa: (3 + 5) / 2.
     EXPECT_NEAR(rankine_stress(section, 3.0 * A, 0, 2.0 * std::numbers::pi * R3 / 2.0), 4.0, 1e-12);
 }

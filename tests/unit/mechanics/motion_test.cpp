@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -154,6 +155,34 @@ TEST_P(InEitherGeometry, UndampedEnergyIsKept)
         EXPECT_LT((high - low) / start, linear ? 1e-10 : 0.02 * fraction * fraction) << fraction;
         EXPECT_LT(std::abs(late - early) / start, linear ? 1e-10 : 0.002 * fraction * fraction) << fraction;
     }
+}
+
+TEST(Motion, BreaksTheBeamsWhoseRankineStressReachesTheStrength)
+{
+    const Lattice lattice = cracked_lattice();
+    const State state = shaken(lattice, 1e-3);
+    const BondLoads loads = bond_loads(lattice, state);
+    for (const double share : {1.0, 0.3, 0.0}) {
+        std::vector<double> stress;
+        for (std::size_t b = 0; b < loads.N.size(); ++b)
+            stress.push_back(lattice.kind[b] == domain::BondKind::beam
+                                 ? rankine_stress(lattice.section, loads.N[b], loads.bending[b], loads.T[b], share)
+                                 : 0.0);
+        std::vector<double> sorted = stress;
+        std::sort(sorted.begin(), sorted.end());
+        const std::size_t middle = sorted.size() * 3 / 4;
+        MotionOptions options{.geometry = Geometry::small_displacement, .bending_share = share};
+        options.strength = 0.5 * (sorted[middle] + sorted[middle + 1]);
+        Motion motion(lattice, options, state);
+        motion.advance(1);
+        std::vector<std::int32_t> expected, found;
+        for (std::size_t b = 0; b < stress.size(); ++b)
+            if (stress[b] >= options.strength) expected.push_back(static_cast<std::int32_t>(b));
+        for (const auto& broken : motion.broken()) found.push_back(broken.bond);
+        std::sort(found.begin(), found.end());
+        EXPECT_EQ(found, expected) << share;
+    }
+    EXPECT_THROW(Motion(lattice, {.bending_share = 1.5}, state), InvalidInput);
 }
 
 TEST(Motion, DrivenWorkIsElasticKineticDampingAndFractureEnergy)

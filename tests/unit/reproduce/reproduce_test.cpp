@@ -159,18 +159,24 @@ TEST(Reproduction, GoesOnFromWhatIsDoneAndWritesItsPages)
     EXPECT_GT(openings[0].numbers.at("K.start"), 1.1 * first.numbers.at("K.start"));
     EXPECT_TRUE(openings[0].numbers.contains("UCS/UTS.30"));
 
+    // The less bending counts, the stronger.
+    const auto bending = by_bending_share(recipe, bench, study, {0.5}, keep);
+    EXPECT_GT(bending.at(0).numbers.at("UTS.30"), 1.1 * first.numbers.at("UTS.30"));
+
     Reproduction result;
     result.settings.seeds = {1};
     result.seeds = {first.numbers};
     result.curves = {first.response};
     result.openings = openings;
+    result.bending = bending;
     save(result, folder);
     for (const char* file : {"reproduction.md", "reproduction.json", "fig18_stress_strain.svg", "fig21_bulk.svg",
                              "fig23_stress.svg", "fig25_cycles.svg", "table4_strengths.svg", "openings_ratio.svg",
-                             "fig19_compression_y.png", "fig24_tension.png", "figures.json"})
+                             "bending_share.svg", "fig19_compression_y.png", "fig24_tension.png", "figures.json"})
         EXPECT_TRUE(std::filesystem::exists(folder / file)) << file;
     EXPECT_NE(page(result).find("pores and cracks"), std::string::npos);
     EXPECT_NE(page(result).find("times a factor"), std::string::npos);
+    EXPECT_NE(page(result).find("| 0.5 |"), std::string::npos);
     std::filesystem::remove_all(folder);
 }
 
