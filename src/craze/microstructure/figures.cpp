@@ -1,5 +1,6 @@
 #include "craze/microstructure/figures.hpp"
 
+#include "craze/io/volume_file.hpp"
 #include "craze/microstructure/threshold.hpp"
 
 #include <fmt/format.h>
@@ -148,11 +149,41 @@ void save_figures(const Microstructure& micro, const std::filesystem::path& fold
     io::write_png(folder / "phases.png", montage(phases, 3));
 }
 
+namespace {
+
+template <class Number>
+void save_labels(const Components& found, double h, const std::filesystem::path& file)
+{
+    Volume<Number> label(found.shape, Number{0});
+    for (std::int64_t r = 0; r < found.shape.ny * found.shape.nz; ++r) {
+        const auto row = label.row(r % found.shape.ny, r / found.shape.ny);
+        for (auto i = found.row_begin[static_cast<std::size_t>(r)];
+             i < found.row_begin[static_cast<std::size_t>(r) + 1]; ++i) {
+            const Run& run = found.runs[static_cast<std::size_t>(i)];
+            std::fill(row.begin() + run.first, row.begin() + run.last + 1, static_cast<Number>(run.label + 1));
+        }
+    }
+    io::write_volume(file, label, h);
+}
+
+void save_labels(const Mask& mask, Connectivity connectivity, double h, const std::filesystem::path& file)
+{
+    const Components found = components(mask, connectivity);
+    if (found.count <= 65535)
+        save_labels<std::uint16_t>(found, h, file);
+    else
+        save_labels<float>(found, h, file);
+}
+
+}  // namespace
+
 void save_intermediates(const Microstructure& micro, const Settings& settings, const std::filesystem::path& folder)
 {
     const Classification c = classified(micro.matter, settings.R_C, settings.R_E, settings.border);
     save(complement(c.closed), micro.gray.voxel_size, folder / "closed.mhd");
     save(complement(c.enlarged), micro.gray.voxel_size, folder / "enlarged.mhd");
+    save_labels(micro.pore, settings.connectivity, micro.gray.voxel_size, folder / "pore_labels.mhd");
+    save_labels(micro.crack, settings.connectivity, micro.gray.voxel_size, folder / "crack_labels.mhd");
 }
 
 }  // namespace craze::microstructure

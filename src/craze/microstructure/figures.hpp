@@ -35,7 +35,9 @@ io::Picture montage(const std::vector<Tile>& tiles, std::int64_t columns);
 /// pores and cracks over gray.
 void save_figures(const Microstructure& micro, const std::filesystem::path& folder);
 
-/// Img. 1a and 1b of Fig. 6 as volumes, `closed.mhd` and `enlarged.mhd`: 255 matter, 0 void.
+/// Img. 1a and 1b of Fig. 6 as volumes, `closed.mhd` and `enlarged.mhd`: 255 matter, 0 void; and `pore_labels.mhd`,
+/// `crack_labels.mhd`: the label of each voxel in `pores.csv` and `cracks.csv`, 0 outside (16 bits, or floats beyond
+/// 65 535 objects).
 void save_intermediates(const Microstructure& micro, const Settings& settings, const std::filesystem::path& folder);
 
 }  // namespace craze::microstructure

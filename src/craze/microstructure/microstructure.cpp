@@ -23,7 +23,8 @@ void describe(Schema& schema, Settings& s)
                   "voxels that hang together to one pore or crack: 26, 18 or 6 neighbours");
     schema.quantity("thickness_step", s.thickness_step, Dimension::pixel, {0.25, 10},
                     "step of the radii tried for local thickness");
-    schema.flag("intermediates", s.intermediates, "write the closed and the enlarged pores of Fig. 6 too");
+    schema.flag("intermediates", s.intermediates,
+                "write the closed and the enlarged pores of Fig. 6 and the label of every pore and crack too");
     schema.flag("figures", s.figures, "write pictures");
     schema.group("sheets", "cracks thinner than their blur, found by the curvature of gray levels", [&] {
         schema.flag("on", s.sheets.on, "take dark sheets for void besides what the threshold finds");
@@ -85,7 +86,7 @@ Microstructure classify(images::Gray gray, const Settings& settings)
     if (micro.matter.count() == 0)
         throw ComputationFailed(
             fmt::format("microstructure: all {} voxels are below the threshold {}: no matter is "
-                        "left; is the picture inverted (void must be dark)?",
+                        "left; is the threshold too high, or the picture inverted (void must be dark)?",
                         gray.level.shape().voxels(), S));
     micro.threshold = S;
     micro.gray = std::move(gray);

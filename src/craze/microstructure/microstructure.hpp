@@ -47,7 +47,7 @@ struct Settings {
     Border border = Border::open;
     Connectivity connectivity = Connectivity::corners;
     double thickness_step = 0.5;  ///< px, between the radii tried for local thickness
-    bool intermediates = false;   ///< write img. 1a and 1b of Fig. 6 too
+    bool intermediates = false;   ///< write img. 1a and 1b of Fig. 6 and labels too
     bool figures = true;          ///< write pictures
     SheetSettings sheets;
     SweepSettings sweep;

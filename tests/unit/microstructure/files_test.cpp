@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <tuple>
 
 namespace craze::microstructure {
 namespace {
@@ -79,6 +80,25 @@ TEST_F(MicrostructureFiles, IntermediatesAreTheClosedAndTheEnlargedPores)
                 pores += closed(x, y, z) == 0 ? 1 : 0;
             }
     EXPECT_GT(pores, 0);
+}
+
+TEST_F(MicrostructureFiles, LabelsAreThoseOfTheTables)
+{
+    const Analysis analysis = analyse(micro, settings);
+    save_intermediates(micro, settings, folder);
+    for (const auto& [file, mask, objects] : {std::tuple{"pore_labels.mhd", &micro.pore, &analysis.pores},
+                                              {"crack_labels.mhd", &micro.crack, &analysis.cracks}}) {
+        const auto label = io::read_volume<std::uint16_t>(folder / file);
+        std::vector<std::int64_t> voxels(objects->size() + 1, 0);
+        for (std::int64_t z = 0; z < 29; ++z)
+            for (std::int64_t y = 0; y < 33; ++y)
+                for (std::int64_t x = 0; x < 47; ++x) {
+                    ASSERT_EQ(label(x, y, z) != 0, (*mask)(x, y, z));
+                    ASSERT_LE(label(x, y, z), objects->size());
+                    ++voxels[label(x, y, z)];
+                }
+        for (std::size_t k = 0; k < objects->size(); ++k) EXPECT_EQ(voxels[k + 1], (*objects)[k].volume) << file << k;
+    }
 }
 
 TEST_F(MicrostructureFiles, TheSummaryAddsUp)
