@@ -1,7 +1,9 @@
-// The inner loops of non-local means, on rows of 16-bit integers so that one instruction serves many voxels.
+// The inner loops of non-local means, on vectors of 16-bit integers so that one instruction serves many voxels.
 //
-// Squared differences are scaled so that a neighbourhood whose weight is zero sums to `cap`; partial sums are held
-// at cap, hence nothing overflows and sums may slide (add the new row, take away the old) without error.
+// The voxels of a vector lie far apart, each in a strip of its own, so that neighbours along x are whole vectors: sums
+// over a neighbourhood slide along x as they do along y and z (add what enters, take away what leaves), and no read
+// straddles two vectors. Squared differences are scaled so that a neighbourhood whose weight is not zero sums to less
+// than `cap`; partial sums are held at cap, hence nothing overflows and sums slide without error.
 
 #pragma once
 
@@ -9,42 +11,64 @@
 
 #include <array>
 #include <cstdint>
+#include <new>
+#include <vector>
 
 namespace craze::images {
 
-constexpr std::int64_t lanes = 16;                            // rows come in multiples of this many voxels
-constexpr std::int64_t longest_row = 16 * lanes;              // voxels in a row of weights
-constexpr std::int64_t longest_column = longest_row + lanes;  // the same with what the neighbourhood needs beside it
-constexpr std::int64_t chunk = 7;                             // rows of weights summed in 16 bits: 7 x 8191 < 2^16
-constexpr std::int32_t weight_of_one = 8191;
+constexpr std::int64_t lanes = 16;  // voxels of a vector
+constexpr std::int64_t chunk = 11;  // rows of weights summed in 16 bits
 
 /// How differences become weights, in integers.
 struct PatchScale {
     explicit PatchScale(const NonLocalMeans& filter);
 
-    bool exact = false;                      ///< squares of whole gray levels; else of scaled ones, over 2^15
     std::array<std::int16_t, 256> scaled{};  ///< of each gray level
-    std::uint16_t cap = 0;                   ///< sum at which the weight is zero, or more
+    bool exact = false;                      ///< squares of whole gray levels; else of scaled ones, over 2^15
+    bool narrow = false;                     ///< no square exceeds cap
+    std::uint16_t cap = 0;                   ///< sum at which the weight is zero
+    /// Of t = max(0, sum - free), with z = max(0, reach - t) stretch: weight = (base + z^2 factor)^32.
     struct Weights {
-        std::uint16_t free = 0;     ///< sum that noise alone explains: weight one
-        std::uint16_t most = 0;     ///< sum beyond `free` at which the weight is zero
-        std::uint16_t stretch = 1;  ///< power of two: x = most stretch 2^-15 lies in [1/2, 1)
-        /// exp(-10 t / most) = (sum_i cubic[i] x^i)^8 with x = t stretch 2^-15; in 2^-13
-        std::array<std::int16_t, 4> cubic{};
+        std::uint16_t free = 0;  ///< sum that noise alone explains: weight one
+        std::uint16_t reach = 0;
+        std::uint16_t stretch = 1;
+        std::int16_t factor = 0;  ///< in 2^-15
+        bool plain = false;       ///< stretch and factor are one
+        std::int16_t base = 0;    ///< in 2^-15
     } weights;
+    std::int32_t one = 0;  ///< the weight of what is alike; the largest there is
 };
 
+/// Allocates whole cache lines.
+template <class T>
+struct CacheLines {
+    using value_type = T;
+    CacheLines() = default;
+    template <class U>
+    CacheLines(const CacheLines<U>&)
+    {
+    }
+    T* allocate(std::size_t n) { return static_cast<T*>(::operator new (n * sizeof(T), std::align_val_t{64})); }
+    void deallocate(T* p, std::size_t) { ::operator delete (p, std::align_val_t{64}); }
+    bool operator==(const CacheLines&) const { return true; }
+};
+template <class T>
+using Aligned = std::vector<T, CacheLines<T>>;
+
 /// One row of voxels p against the rows of p + s, for `count` shifts s that follow each other along x: the pointers are
-/// those of the first shift, the others lie one value further (levels) or one stride further (sums).
+/// those of the first shift, the others lie one vector further (levels) or one stride further (sums).
 struct PatchRow {
-    std::int64_t length = 0, count = 0, neighbourhood = 0;
+    std::int64_t length = 0;  ///< vectors of voxels p
+    std::int64_t count = 0, neighbourhood = 0;
     const std::int16_t *p_new, *p_old;    ///< scaled levels around p, in the plane that enters and the one that leaves
     const std::int16_t *ps_new, *ps_old;  ///< the same around p + s
-    std::int64_t column_stride, weight_stride;
-    std::uint16_t* column;            ///< length + lanes squares summed along z
-    const std::uint16_t* column_old;  ///< those of the row that leaves the neighbourhood
-    std::uint16_t* band;              ///< columns summed along y
-    std::uint16_t* weight;
+    std::int64_t column_stride, weight_stride;  ///< in values
+    std::uint16_t* column;                      ///< length + neighbourhood - 1 vectors of squares summed along z
+    const std::uint16_t* column_old;            ///< those of the row that leaves the neighbourhood
+    std::uint16_t* band;                        ///< columns summed along y
+    std::uint16_t* weight;                      ///< length vectors
+
+    std::int64_t columns() const { return (length + neighbourhood - 1) * lanes; }
 };
 
 /// column += squares of the plane that enters, for the first planes of a tile.
@@ -52,37 +76,40 @@ void start_columns(const PatchRow& r, const PatchScale& scale);
 /// Brings columns (unless `columns_done`) and bands up to date; if `weigh`, sums the bands along x and makes weights.
 void weigh_row(const PatchRow& r, const PatchScale& scale, bool columns_done, bool weigh);
 
-struct Accumulators {
-    std::int32_t* weighted;  ///< sum of weight x level, in 2^-8
-    std::int32_t* weights;
-};
-/// `count` rows of weights and of levels, each one stride further than the row before it.
+/// Rows of weights for shifts along x from `first` on, and the row of levels (<< 7) that they weigh.
 struct WeightedRows {
     const std::uint16_t* weight;
-    const std::int16_t* level;  ///< << 7
-    std::int64_t weight_stride, level_stride, count;
+    std::int64_t weight_stride, count, length;
+    std::int64_t first;
+    const std::int16_t* level;  ///< of the first voxel of the row, before any shift
 };
-/// Adds the weights and weighted levels of all rows to n voxels, n a multiple of lanes.
-void add_rows(const WeightedRows& rows, Accumulators to, std::int64_t n);
+/// Sums of each vector of voxels: of weight x level, in 2^-8, its even voxels, then its odd ones; of weights likewise.
+constexpr std::int64_t sums_of_vector = 4 * lanes / 2;
+/// To each p the weights and the levels of p + s; `to` belongs to the first p.
+void add_here(const WeightedRows& rows, std::int32_t* to);
+/// To each p + s the weights and the levels of p; `to` belongs to the first p, and those before it are reached, too.
+void add_there(const WeightedRows& rows, std::int32_t* to);
 
 /// Whether the loops written out for AVX2 run here; they give the bits of the plain ones.
 bool spelled_out();
 namespace plain {
 void start_columns(const PatchRow& r, const PatchScale& scale);
 void weigh_row(const PatchRow& r, const PatchScale& scale, bool columns_done, bool weigh);
-void add_rows(const WeightedRows& rows, Accumulators to, std::int64_t n);
+void add_here(const WeightedRows& rows, std::int32_t* to);
+void add_there(const WeightedRows& rows, std::int32_t* to);
 }  // namespace plain
 namespace avx2 {
 void start_columns(const PatchRow& r, const PatchScale& scale);
 void weigh_row(const PatchRow& r, const PatchScale& scale, bool columns_done, bool weigh);
-void add_rows(const WeightedRows& rows, Accumulators to, std::int64_t n);
+void add_here(const WeightedRows& rows, std::int32_t* to);
+void add_there(const WeightedRows& rows, std::int32_t* to);
 }  // namespace avx2
 
 /// The mean, with the voxel itself, whose weight is one.
-inline std::uint8_t level_of(std::uint8_t own, std::int32_t weighted, std::int32_t weights)
+inline std::uint8_t level_of(std::uint8_t own, std::int32_t weighted, std::int32_t weights, std::int32_t one)
 {
-    const std::int64_t sum = std::int64_t{256} * weighted + std::int64_t{weight_of_one} * own;
-    const std::int64_t count = std::int64_t{weights} + weight_of_one;
+    const std::int64_t sum = std::int64_t{256} * weighted + std::int64_t{one} * own;
+    const std::int64_t count = std::int64_t{weights} + one;
     return static_cast<std::uint8_t>(std::min<std::int64_t>(255, (sum + count / 2) / count));
 }
 

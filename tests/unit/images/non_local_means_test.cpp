@@ -155,43 +155,46 @@ TEST(PatchWeights, AreTheSameBitsSpelledOutOrPlain)
         const PatchScale scale(filter);
         Random random(7);
         PatchRow r{};
-        r.length = 5 * lanes, r.count = filter.search, r.neighbourhood = filter.neighbourhood;
-        r.column_stride = r.length + lanes, r.weight_stride = r.length + 8;
-        std::vector<std::int16_t> levels(4 * 200), sums(200);
+        r.length = 7, r.count = filter.search, r.neighbourhood = filter.neighbourhood;
+        r.column_stride = r.columns() + lanes, r.weight_stride = r.length * lanes;
+        const std::int64_t row = (r.length + r.neighbourhood + r.count) * lanes;
+        std::vector<std::int16_t> levels(static_cast<std::size_t>(4 * row)), sums(static_cast<std::size_t>(2 * row));
         for (auto& v : levels) v = scale.scaled[random.bits() & 255U];
         for (auto& v : sums) v = static_cast<std::int16_t>((random.bits() & 255U) << 7);
-        r.p_new = &levels[0], r.p_old = &levels[200], r.ps_new = &levels[400], r.ps_old = &levels[600];
+        r.p_new = &levels[0], r.p_old = r.p_new + row, r.ps_new = r.p_new + 2 * row, r.ps_old = r.p_new + 3 * row;
         struct State {
             std::vector<std::uint16_t> column, old, band, weight;
-            std::vector<std::int32_t> weighted, weights;
+            std::vector<std::int32_t> sums;
         } a;
         for (auto* v : {&a.column, &a.old, &a.band})
             for (std::int64_t i = 0; i < r.count * r.column_stride; ++i)
                 v->push_back(static_cast<std::uint16_t>(random.bits()));
         a.weight.resize(static_cast<std::size_t>(r.count * r.weight_stride));
-        a.weighted.assign(static_cast<std::size_t>(r.length), 3), a.weights.assign(a.weighted.size(), 5);
+        const std::int64_t R = filter.search / 2;
+        a.sums.assign(static_cast<std::size_t>((r.length + 2 * R) * sums_of_vector), 3);
         State b = a;
         const auto point = [&](State& s) {
             r.column = s.column.data(), r.column_old = s.old.data(), r.band = s.band.data(), r.weight = s.weight.data();
         };
-        const auto sum = [&](State& s) {
-            return std::pair{WeightedRows{s.weight.data(), sums.data() + 20, r.weight_stride, 1, r.count},
-                             Accumulators{s.weighted.data(), s.weights.data()}};
+        const auto rows = [&](State& s) {
+            return WeightedRows{s.weight.data(), r.weight_stride, r.count, r.length, -R, sums.data() + R * lanes};
         };
+        const auto to = [&](State& s) { return s.sums.data() + R * sums_of_vector; };
         for (const bool columns_done : {true, false}) {
             point(a);
             avx2::start_columns(r, scale);
             avx2::weigh_row(r, scale, columns_done, true);
-            avx2::add_rows(sum(a).first, sum(a).second, r.length);
+            avx2::add_here(rows(a), to(a));
+            avx2::add_there(rows(a), to(a));
             point(b);
             plain::start_columns(r, scale);
             plain::weigh_row(r, scale, columns_done, true);
-            plain::add_rows(sum(b).first, sum(b).second, r.length);
+            plain::add_here(rows(b), to(b));
+            plain::add_there(rows(b), to(b));
             EXPECT_EQ(a.column, b.column);
             EXPECT_EQ(a.band, b.band);
             EXPECT_EQ(a.weight, b.weight);
-            EXPECT_EQ(a.weighted, b.weighted);
-            EXPECT_EQ(a.weights, b.weights);
+            EXPECT_EQ(a.sums, b.sums);
         }
     }
 }
