@@ -31,53 +31,96 @@ AVX2_INLINE __m256i square(const i16* a, const i16* b, __m256i cap)
     return _mm256_min_epu16(how == Squares::exact ? _mm256_mullo_epi16(d, d) : _mm256_mulhrs_epi16(d, d), cap);
 }
 
+// From a sum to its weight in four steps.
 template <bool handy>
-AVX2_INLINE __m256i weight_of(__m256i sum, const PatchScale::Weights& w)
+AVX2_INLINE __m256i distance_of(__m256i sum, const PatchScale::Weights& w)
 {
-    __m256i e = _mm256_subs_epu16(all(w.reach), _mm256_subs_epu16(sum, all(w.free)));
-    if constexpr (!handy) e = _mm256_mullo_epi16(e, all(w.stretch));
-    e = _mm256_mulhrs_epi16(e, e);
+    const __m256i z = _mm256_subs_epu16(all(w.reach), _mm256_subs_epu16(sum, all(w.free)));
+    return handy ? z : _mm256_mullo_epi16(z, all(w.stretch));
+}
+template <bool handy>
+AVX2_INLINE __m256i parabola_of(__m256i z, const PatchScale::Weights& w)
+{
+    __m256i e = _mm256_mulhrs_epi16(z, z);
     if constexpr (!handy) e = _mm256_mulhrs_epi16(e, all(w.factor));
-    e = _mm256_add_epi16(e, all(w.base));
-    _Pragma("GCC unroll 5") for (int i = 0; i < 5; ++i) e = _mm256_mulhrs_epi16(e, e);
-    return e;
+    return _mm256_add_epi16(e, all(w.base));
+}
+AVX2_INLINE __m256i squared(__m256i e) { return _mm256_mulhrs_epi16(e, e); }
+
+// One shift of a row: columns and bands slide on; if needed, weights are made. The chain from levels to a weight is
+// much longer than what the processor looks ahead: each turn of the loop works on five vectors, one step of it each.
+template <Squares how, bool slide, bool handy, bool needed>
+AVX2_INLINE void weigh_shift(const PatchRow& r, std::int64_t k, __m256i cap, const PatchScale::Weights& w)
+{
+    const i16 *a = r.p_new, *b = r.ps_new + k * lanes, *old_a = r.p_old, *old_b = r.ps_old + k * lanes;
+    u16 *column = r.column + k * r.column_stride, *band = r.band + k * r.column_stride;
+    const u16* old = r.column_old + k * r.column_stride;
+    const std::int64_t back = r.neighbourhood - 1, length = r.length + back;
+    u16* weight = r.weight + k * r.weight_stride - back * lanes;
+    __m256i patch = _mm256_setzero_si256();
+    const auto change = [&](std::int64_t i) AVX2_LAMBDA {
+        i *= lanes;
+        if constexpr (!slide) return _mm256_setzero_si256();
+        return _mm256_sub_epi16(square<how>(a + i, b + i, cap), square<how>(old_a + i, old_b + i, cap));
+    };
+    const auto add = [&](std::int64_t i, __m256i by) AVX2_LAMBDA {
+        i *= lanes;
+        __m256i sum = at(column + i);
+        if constexpr (slide) {
+            sum = _mm256_add_epi16(sum, by);
+            put(column + i, sum);
+        }
+        const __m256i next = _mm256_add_epi16(
+            at(band + i), _mm256_sub_epi16(_mm256_min_epu16(sum, cap), _mm256_min_epu16(at(old + i), cap)));
+        put(band + i, next);
+        if constexpr (needed) patch = _mm256_add_epi16(patch, _mm256_min_epu16(next, cap));
+    };
+    __m256i d = change(0);
+    std::int64_t i = 0;
+    for (; i < (needed ? back : length - 1); ++i) {
+        add(i, d);
+        d = change(i + 1);
+    }
+    if constexpr (!needed) return add(i, d);
+    const auto distance = [&](std::int64_t j) AVX2_LAMBDA {
+        add(j, d);
+        const __m256i z = distance_of<handy>(patch, w);
+        patch = _mm256_sub_epi16(patch, _mm256_min_epu16(at(band + (j - back) * lanes), cap));
+        return z;
+    };
+    if (r.length < 4) {
+        for (; i < length; ++i) {
+            __m256i e = parabola_of<handy>(distance(i), w);
+            for (int j = 0; j < 5; ++j) e = squared(e);
+            put(weight + i * lanes, e);
+            if (i + 1 < length) d = change(i + 1);
+        }
+        return;
+    }
+    __m256i z = distance(i), e1, e2;
+    d = change(i + 1);
+    e1 = squared(parabola_of<handy>(z, w)), z = distance(i + 1), d = change(i + 2);
+    e2 = squared(squared(e1)), e1 = squared(parabola_of<handy>(z, w)), z = distance(i + 2), d = change(i + 3);
+    for (i += 3; i < length - 1; ++i) {
+        put(weight + (i - 3) * lanes, squared(squared(e2)));
+        e2 = squared(squared(e1));
+        e1 = squared(parabola_of<handy>(z, w));
+        z = distance(i);
+        d = change(i + 1);
+    }
+    put(weight + (i - 3) * lanes, squared(squared(e2)));
+    put(weight + (i - 2) * lanes, squared(squared(squared(squared(e1)))));
+    put(weight + (i - 1) * lanes, squared(squared(squared(squared(squared(parabola_of<handy>(z, w)))))));
+    e1 = parabola_of<handy>(distance(i), w);
+    put(weight + i * lanes, squared(squared(squared(squared(squared(e1))))));
 }
 
-// All shifts of a row: columns and bands slide on; if needed, weights are made.
 template <Squares how, bool slide, bool handy, bool needed>
 AVX2 void weigh_rows(const PatchRow& r, const PatchScale& scale)
 {
     const __m256i cap = all(scale.cap);
     const PatchScale::Weights w = scale.weights;
-    const std::int64_t back = (r.neighbourhood - 1) * lanes, length = r.columns();
-    for (std::int64_t k = 0; k < r.count; ++k) {
-        const i16 *a = r.p_new, *b = r.ps_new + k * lanes, *old_a = r.p_old, *old_b = r.ps_old + k * lanes;
-        u16 *column = r.column + k * r.column_stride, *band = r.band + k * r.column_stride;
-        u16* weight = r.weight + k * r.weight_stride - back;
-        const u16* old = r.column_old + k * r.column_stride;
-        __m256i patch = _mm256_setzero_si256();
-        const auto next = [&](std::int64_t i) AVX2_LAMBDA {
-            __m256i sum = at(column + i);
-            if constexpr (slide) {
-                sum = _mm256_add_epi16(
-                    sum, _mm256_sub_epi16(square<how>(a + i, b + i, cap), square<how>(old_a + i, old_b + i, cap)));
-                put(column + i, sum);
-            }
-            const __m256i change = _mm256_sub_epi16(_mm256_min_epu16(sum, cap), _mm256_min_epu16(at(old + i), cap));
-            const __m256i value = _mm256_add_epi16(at(band + i), change);
-            put(band + i, value);
-            if constexpr (needed) patch = _mm256_add_epi16(patch, _mm256_min_epu16(value, cap));
-        };
-        std::int64_t i = 0;
-        for (; i < back; i += lanes) next(i);
-        for (; i < length; i += lanes) {
-            next(i);
-            if constexpr (needed) {
-                put(weight + i, weight_of<handy>(patch, w));
-                patch = _mm256_sub_epi16(patch, _mm256_min_epu16(at(band + i - back), cap));
-            }
-        }
-    }
+    for (std::int64_t k = 0; k < r.count; ++k) weigh_shift<how, slide, handy, needed>(r, k, cap, w);
 }
 
 template <Squares how, bool handy>
