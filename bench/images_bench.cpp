@@ -59,9 +59,10 @@ void stripes(benchmark::State& state, images::Stripes::Method method)
     images::Stripes how;
     how.method = method;
     const images::StripeFilter filter(shape.nx, shape.ny, how);
+    const Volume<std::uint8_t>& volume = coating();
     for (auto _ : state)
         parallel_tasks(shape.nz, [&](std::int64_t z) {
-            const auto from = coating().slice(z);
+            const auto from = volume.slice(z);
             std::vector<float> slice(from.begin(), from.end());
             filter.remove(slice);
             benchmark::DoNotOptimize(slice.data());
@@ -97,13 +98,14 @@ BENCHMARK(alignment)->Unit(benchmark::kMillisecond)->UseRealTime();
 // Histogram, fit, profile along the gradient, removal: what a stack in memory costs.
 void homogenisation(benchmark::State& state)
 {
-    std::vector<std::uint8_t> result(coating().slice(0).size());
+    const Volume<std::uint8_t>& volume = coating();
+    std::vector<std::uint8_t> result(volume.slice(0).size());
     for (auto _ : state) {
-        images::Homogeniser homogeniser(shape, {}, images::histogram_of(coating().values()));
-        for (std::int64_t z = 0; z < shape.nz; ++z) homogeniser.fit(z, coating().slice(z));
-        for (std::int64_t z = 0; z < shape.nz; ++z) homogeniser.learn(z, coating().slice(z));
+        images::Homogeniser homogeniser(shape, {}, images::histogram_of(volume.values()));
+        for (std::int64_t z = 0; z < shape.nz; ++z) homogeniser.fit(z, volume.slice(z));
+        for (std::int64_t z = 0; z < shape.nz; ++z) homogeniser.learn(z, volume.slice(z));
         homogeniser.settle();
-        for (std::int64_t z = 0; z < shape.nz; ++z) homogeniser.remove(z, coating().slice(z), result);
+        for (std::int64_t z = 0; z < shape.nz; ++z) homogeniser.remove(z, volume.slice(z), result);
         benchmark::DoNotOptimize(result.data());
     }
     per_voxel(state);

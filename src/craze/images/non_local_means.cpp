@@ -14,7 +14,7 @@ namespace {
 
 // Of a tile, in vectors, rows and planes: what a row of all shifts needs stays in the second-level cache, the sums of a
 // tile in the third.
-constexpr std::int64_t tile_length = 30, tile_ny = 12, tile_nz = 32;
+constexpr std::int64_t tile_length = 30, tile_ny = 16, tile_nz = 48;
 
 // Each pair of voxels p and p + s is met once, at p, with s in one half of the search window. One of the two lies in
 // the volume, so p may lie up to R before it or behind.

@@ -31,10 +31,14 @@ CRAZE_MULTIVERSION void add_scaled(float* __restrict row, const float* __restric
     for (std::int64_t x = 0; x < n; ++x) row[x] += factor * wave[x];
 }
 
+// What lies further than `below` under the model or `above` over it is replaced by the model.
 CRAZE_MULTIVERSION void fill_voids(float* __restrict filled, const float* __restrict row, const float* __restrict model,
-                                   float low, float high, std::int64_t n)
+                                   float below, float above, std::int64_t n)
 {
-    for (std::int64_t x = 0; x < n; ++x) filled[x] = row[x] >= low && row[x] <= high ? row[x] : model[x];
+    for (std::int64_t x = 0; x < n; ++x) {
+        const float d = row[x] - model[x];
+        filled[x] = d >= -below && d <= above ? row[x] : model[x];
+    }
 }
 
 std::vector<float> turned(std::span<const float> slice, std::int64_t nx, std::int64_t ny)
@@ -101,7 +105,13 @@ void StripeFilter::remove(std::span<float> slice) const
 void StripeFilter::notch(std::span<float> slice) const
 {
     const Solid solid = solid_of_slice(slice);
-    const auto low = static_cast<float>(solid.low), high = static_cast<float>(solid.high);
+    // First against the mode of the slice, then closer, against the row's own model: the rims of voids, which are but a
+    // little darker than the solid, would pull the model down and be lifted with it.
+    const bool known = solid.low > 0.0 || solid.high < 255.0;
+    const auto wide = known ? static_cast<float>(3.0 * solid.spread) : 1e9F;
+    const auto close = known ? static_cast<float>(2.0 * solid.spread) : 1e9F;
+    // Coefficients that hold no more than noise may are left alone; the others lose Wiener's share.
+    const auto noise = known ? static_cast<float>(2.0 * solid.spread * solid.spread) : 0.0F;
     const auto terms = static_cast<std::int64_t>(share_.size());
     const auto nx = static_cast<std::size_t>(nx_), ny = static_cast<std::size_t>(ny_);
     const auto wave = [&](std::int64_t k) { return &waves_[static_cast<std::size_t>(k) * nx]; };
@@ -110,8 +120,9 @@ void StripeFilter::notch(std::span<float> slice) const
     for (std::size_t y = 0; y < ny; ++y) {
         const float* row = &slice[y * nx];
         std::fill(model.begin(), model.end(), static_cast<float>(solid.mode));
-        for (int round = 0; round < 4; ++round) {
-            fill_voids(filled.data(), row, model.data(), low, high, nx_);
+        for (int round = 0; round < 5; ++round) {
+            const float reach = round == 0 ? wide : close;
+            fill_voids(filled.data(), row, model.data(), reach, reach, nx_);
             std::fill(model.begin(), model.end(), 0.0F);
             for (std::int64_t k = 0; k < terms; ++k) {
                 const float c = product(filled.data(), wave(k), nx_);
@@ -123,8 +134,11 @@ void StripeFilter::notch(std::span<float> slice) const
     for (std::int64_t k = 0; k < terms; ++k) {
         const std::span<float> line(&coefficient[static_cast<std::size_t>(k) * ny], ny);
         across_->forward(line);
-        for (std::size_t m = 0; m < ny; ++m)
-            line[m] *= keep_low_[m] * share_[static_cast<std::size_t>(k)] / (2.0F * static_cast<float>(ny_));
+        for (std::size_t m = 0; m < ny; ++m) {
+            const float power = line[m] * line[m] / (2.0F * static_cast<float>(ny_));
+            const float stripe = power > noise ? 1.0F - noise / power : 0.0F;
+            line[m] *= stripe * keep_low_[m] * share_[static_cast<std::size_t>(k)] / (2.0F * static_cast<float>(ny_));
+        }
         across_->backward(line);
     }
     for (std::size_t y = 0; y < ny; ++y)
