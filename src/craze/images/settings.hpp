@@ -38,7 +38,7 @@ struct Stripes {
     double length = 0.5;      ///< shortest stripe removed, as a share of the slice's extent along the stripes
     double protect = 64.0;    ///< px: variations across the stripes longer than this are kept
     std::int64_t levels = 7;  ///< wavelet: levels of decomposition
-    double damping = 12.0;    ///< wavelet: width of the damped band, in waves per slice
+    double damping = 25.0;    ///< wavelet: width of the damped band, in waves per slice
 };
 
 /// Non-local means [2.3 (3)].

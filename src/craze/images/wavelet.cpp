@@ -1,11 +1,12 @@
 #include "craze/images/wavelet.hpp"
 
+#include "craze/images/fourier.hpp"
 #include "craze/images/non_local_means.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
+#include <span>
 #include <vector>
 
 namespace craze::images {
@@ -49,24 +50,25 @@ void join(float* line, std::int64_t n, std::int64_t step, std::vector<float>& sc
     for (std::int64_t i = 0; i < n; ++i) line[i * step] = scratch[static_cast<std::size_t>(i)];
 }
 
-// Slow waves along a row of n coefficients, seen as mirrored at its ends.
-void damp_row(float* row, std::int64_t n, double damping)
+// Slow waves along a row of coefficients, seen as mirrored at its ends.
+void damp_row(float* row, const Cosine& cosine, const std::vector<float>& kept)
 {
-    const auto last = std::min(n - 1, static_cast<std::int64_t>(std::ceil(3.0 * 2.0 * damping)));
-    std::vector<double> removed(static_cast<std::size_t>(n));
-    for (std::int64_t k = 0; k <= last; ++k) {
+    const std::span<float> line(row, kept.size());
+    cosine.forward(line);
+    for (std::size_t k = 0; k < kept.size(); ++k) line[k] *= kept[k];
+    cosine.backward(line);
+}
+
+// Of each cosine term; with what forward and backward multiply by taken out.
+std::vector<float> kept_of(std::int64_t n, double damping)
+{
+    std::vector<float> kept;
+    for (std::int64_t k = 0; k < n; ++k) {
         const double waves = static_cast<double>(k) / 2.0;  // a cosine term holds half waves
-        const double share = std::exp(-waves * waves / (2.0 * damping * damping));
-        const auto wave = [&](std::int64_t x) {
-            return std::cos(std::numbers::pi * static_cast<double>(k) * (static_cast<double>(x) + 0.5) /
-                            static_cast<double>(n));
-        };
-        double sum = 0.0;
-        for (std::int64_t x = 0; x < n; ++x) sum += static_cast<double>(row[x]) * wave(x);
-        const double amplitude = share * sum * (k == 0 ? 1.0 : 2.0) / static_cast<double>(n);
-        for (std::int64_t x = 0; x < n; ++x) removed[static_cast<std::size_t>(x)] += amplitude * wave(x);
+        kept.push_back(static_cast<float>((1.0 - std::exp(-waves * waves / (2.0 * damping * damping))) /
+                                          (2.0 * static_cast<double>(n))));
     }
-    for (std::int64_t x = 0; x < n; ++x) row[x] -= static_cast<float>(removed[static_cast<std::size_t>(x)]);
+    return kept;
 }
 
 }  // namespace
@@ -88,7 +90,9 @@ void damp_stripes(std::span<float> picture, std::int64_t nx, std::int64_t ny, st
     for (std::int64_t level = 0, w = width, h = height; level < deep; ++level, w /= 2, h /= 2) {
         for (std::int64_t y = 0; y < h; ++y) split(at(0, y), w, 1, scratch);
         for (std::int64_t x = 0; x < w; ++x) split(at(x, 0), h, width, scratch);
-        for (std::int64_t y = h / 2; y < h; ++y) damp_row(at(0, y), w / 2, damping);
+        const Cosine cosine(w / 2);
+        const std::vector<float> kept = kept_of(w / 2, damping);
+        for (std::int64_t y = h / 2; y < h; ++y) damp_row(at(0, y), cosine, kept);
     }
     for (std::int64_t level = deep - 1; level >= 0; --level) {
         const std::int64_t w = width >> level, h = height >> level;
