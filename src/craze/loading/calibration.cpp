@@ -13,7 +13,9 @@ namespace craze::loading {
 namespace {
 
 constexpr double least_ratio = 0.05, most_ratio = 1.0;
-constexpr double usual_slope = -0.37;  // d nu / d r~ near Table 2
+// Near Table 2, packings of the paper's cardinality: r~ that gives nu = 0.29, and d nu / d r~.
+constexpr double usual_ratio = 0.3665, usual_slope = -0.37;
+constexpr double loose = 1e-4, tight = 1e-6;  // residuals: nu to some 1e-4 and to 1e-6
 
 double mean(const Vec3& v) { return (v.x + v.y + v.z) / 3.0; }
 
@@ -23,15 +25,16 @@ public:
     Tensions(const domain::Domain& dense, const mechanics::DenseMaterial& target, const CalibrationOptions& options)
         : dense_(dense), target_(target), options_(options)
     {
-        options_.rig.residual = std::min(options_.rig.residual, 1e-7);
     }
 
-    Calibration::Trial run(const mechanics::BeamMaterial& beam, int first_axis)
+    Calibration::Trial run(const mechanics::BeamMaterial& beam, double residual)
     {
-        Rig rig(dense_, beam, target_, options_.rig);
+        RigOptions options = options_.rig;
+        options.residual = residual;
+        Rig rig(dense_, beam, target_, options);
         Calibration::Trial trial;
         trial.r_tilde = beam.r_tilde;
-        for (int axis = first_axis; axis < 3; ++axis) {
+        for (int axis = 0; axis < 3; ++axis) {
             Loading loading;
             loading.axis = axis;
             loading.drive[static_cast<std::size_t>(axis)] = {false, 1.0};
@@ -76,43 +79,45 @@ Calibration calibrate(const domain::Domain& dense, const mechanics::DenseMateria
     Calibration c;
     c.target = target;
     c.done = true;
-    mechanics::BeamMaterial beam{mechanics::BeamMaterial{}.E_B, options.nu_B, options.first_guess};
+    const double guess = options.first_guess.value_or(usual_ratio + (target.nu_D - 0.29) / usual_slope);
+    mechanics::BeamMaterial beam{mechanics::BeamMaterial{}.E_B, options.nu_B,
+                                 std::clamp(guess, 2.0 * least_ratio, 0.9 * most_ratio)};
     Tensions tensions(dense, target, options);
-    Progress progress("calibration", 7);
+    const double last_residual = std::min(options.rig.residual, tight);
+    Progress progress("calibration", 6);
 
-    // nu falls as r~ rises: low < sought < high, known from trials along all axes. In between, far from the target, one
-    // axis shows the way: its slope, and how far it was from the mean.
-    double low = least_ratio, high = most_ratio, slope = usual_slope, offset = 0.0;
-    bool all_axes = true;
+    // nu falls as r~ rises: low < sought < high. Trials are loose until the next one is likely to be the last.
+    double low = least_ratio, high = most_ratio, slope = usual_slope;
+    bool last = false;
     for (int trial = 0; trial < 40; ++trial) {
-        c.path.push_back(tensions.run(beam, all_axes ? 0 : 2));
-        progress.advance(all_axes ? 3 : 1);
+        c.path.push_back(tensions.run(beam, last ? last_residual : loose));
+        progress.advance(3);
         const auto& now = c.path.back();
-        if (all_axes) offset = mean(now.nu) - now.nu.z;
-        const double excess = now.nu.z + offset - target.nu_D;
-        if (all_axes && std::abs(excess) <= 0.9 * options.tolerance * target.nu_D) {
+        const double excess = mean(now.nu) - target.nu_D, r = beam.r_tilde;
+        if (last && std::abs(excess) <= 0.9 * options.tolerance * target.nu_D) {
             beam.E_B *= target.E_D / mean(now.E);
             c.beam = beam;
             conclude(c, target.E_D / mean(now.E));
             return c;
         }
-        const double r = beam.r_tilde;
         if ((excess > 0.0 && r == most_ratio) || (excess < 0.0 && r == least_ratio))
             throw ComputationFailed(
                 fmt::format("calibration: no beam radius ratio in [{}, {}] gives nu_D = {} (r~ = {:.4g} gives {:.4g}); "
                             "a packing of other "
                             "cardinality, or another nu_D, might",
-                            least_ratio, most_ratio, target.nu_D, r, now.nu.z + offset));
-        if (all_axes) (excess > 0.0 ? low : high) = r;
+                            least_ratio, most_ratio, target.nu_D, r, mean(now.nu)));
+        bool measured = false;
         if (trial > 0)
-            if (const auto& last = c.path[c.path.size() - 2]; std::abs(r - last.r_tilde) > 1e-5) {
-                const double measured = (now.nu.z - last.nu.z) / (r - last.r_tilde);
-                if (measured < 0.1 * usual_slope) slope = measured;
+            if (const auto& before = c.path[c.path.size() - 2]; std::abs(r - before.r_tilde) > 1e-3) {
+                const double secant = (mean(now.nu) - mean(before.nu)) / (r - before.r_tilde);
+                if (secant < 0.1 * usual_slope) slope = secant, measured = true;
             }
+        // A loose trial this near to the target does not tell on which side of it it is.
+        if (last || std::abs(excess) > 3.0 * loose) (excess > 0.0 ? low : high) = r;
         double next = std::clamp(r - excess / slope, least_ratio, most_ratio);
         const bool known = (next == low && low > least_ratio) || (next == high && high < most_ratio);
         if (next < low || next > high || known) next = 0.5 * (low + high);
-        all_axes = std::abs(excess) <= 0.005 * target.nu_D || next == least_ratio || next == most_ratio || trial > 6;
+        last = last || std::abs(excess) <= (measured ? 0.05 : 0.02) * target.nu_D || trial > 6;
         beam.r_tilde = next;
     }
     throw ComputationFailed(
@@ -125,7 +130,7 @@ Calibration measure_given(const domain::Domain& dense, const mechanics::DenseMat
     Calibration c;
     c.target = target;
     c.beam = beam;
-    c.path.push_back(Tensions(dense, target, options).run(beam, 0));
+    c.path.push_back(Tensions(dense, target, options).run(beam, std::min(options.rig.residual, tight)));
     conclude(c, 1.0);
     return c;
 }

@@ -25,7 +25,7 @@ Calibration find_beams(const domain::Domain& dense, const Settings& s)
     const mechanics::DenseMaterial target = dense_material(s);
     CalibrationOptions options;
     options.nu_B = s.beam.given.nu_B;
-    options.first_guess = s.beam.given.r_tilde;
+    if (s.beam.given.r_tilde != mechanics::BeamMaterial{}.r_tilde) options.first_guess = s.beam.given.r_tilde;
     options.tolerance = s.beam.tolerance;
     options.rig = rig_options(s);
     if (!s.beam.calibrate) return measure_given(dense, target, s.beam.given, options);

@@ -293,7 +293,8 @@ private:
         if (!watch_) return;
         const auto velocity = motion_->velocity();
         const bool last = progress_.waypoint == std::ssize(loading_.path) || !curve_.stopped.empty();
-        watch_({loading_, curve_.points.back(), std::ssize(curve_.points) - 1, state, forces, velocity, last});
+        watch_({loading_, curve_.points.back(), std::ssize(curve_.points) - 1, state, forces, velocity, last,
+                curve_.broken});
     }
 
     Rig& rig_;

@@ -26,8 +26,9 @@ struct Moment {
     std::int64_t index;  ///< of the point on its curve
     const mechanics::State& state;
     const mechanics::Forces& forces;
-    std::span<const double> velocity;  ///< shape (n, 6), m/s and rad/s; empty at rest
-    bool last;                         ///< no other follows
+    std::span<const double> velocity;         ///< shape (n, 6), m/s and rad/s; empty at rest
+    bool last;                                ///< no other follows
+    std::span<const BrokenBond> broken = {};  ///< up to now
 };
 using Watcher = std::function<void(const Moment&)>;
 

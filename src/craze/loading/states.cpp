@@ -3,6 +3,7 @@
 #include "craze/core/parallel.hpp"
 #include "craze/io/vtu_file.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -112,6 +113,14 @@ void write_state(const std::filesystem::path& file, const Rig& rig, const Moment
             rotation[3 * e + a] = static_cast<float>(moment.state.u[6 * e + 3 + a]);
         }
     }
+    std::vector<float> breaking(lattice.i.size(), 0.0F);
+    for (const BrokenBond& bond : moment.broken) {
+        const auto begin = lattice.j.begin() + lattice.first[static_cast<std::size_t>(bond.i)],
+                   end = lattice.j.begin() + lattice.first[static_cast<std::size_t>(bond.i) + 1];
+        const auto found = std::find(begin, end, bond.j);
+        if (found != end)
+            breaking[static_cast<std::size_t>(found - lattice.j.begin())] = static_cast<float>(bond.strain);
+    }
     const auto radius = narrow(lattice.r), thickness = narrow(lattice.thickness);
     std::vector<std::int32_t> lines(2 * lattice.i.size());
     for (std::size_t b = 0; b < lattice.i.size(); ++b) lines[2 * b] = lattice.i[b], lines[2 * b + 1] = lattice.j[b];
@@ -133,7 +142,7 @@ void write_state(const std::filesystem::path& file, const Rig& rig, const Moment
     grid.on_lines = {{"thickness", 1, Floats(thickness)},          {"contact", 1, Bytes(loads.contact)},
                      {"broken", 1, Bytes(loads.broken)},           {"normal_force", 1, Floats(loads.N)},
                      {"bending_moment", 1, Floats(loads.bending)}, {"torque", 1, Floats(loads.torque)},
-                     {"rankine_stress", 1, Floats(loads.rankine)}};
+                     {"rankine_stress", 1, Floats(loads.rankine)}, {"breaking_strain", 1, Floats(breaking)}};
     std::filesystem::create_directories(file.parent_path());
     io::write_vtu(file, grid);
 }

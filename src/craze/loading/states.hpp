@@ -27,7 +27,8 @@ BornLoads born_loads(const mechanics::Lattice& lattice, const mechanics::State& 
                      double bending_share = 1.0);
 
 /// Points: radius, displacement, rotation, velocity (in motion), stress, damage. Lines: thickness, contact, broken,
-/// normal_force, bending_moment, torque, rankine_stress. Points are centres at rest: warp by displacement.
+/// normal_force, bending_moment, torque, rankine_stress, breaking_strain (of the program, 0 where nothing has broken).
+/// Points are centres at rest: warp by displacement.
 void write_state(const std::filesystem::path& file, const Rig& rig, const Moment& moment);
 
 }  // namespace craze::loading

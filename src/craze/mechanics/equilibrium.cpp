@@ -49,6 +49,7 @@ struct EquilibriumSolver::Work {
     double scale(const State& state) const;
     double exact_step();
     double rounding(const State& state) const;
+    void check_reason(const State& state) const;
     void hold(std::vector<double>& v) const
     {
         for (const std::int64_t dof : imposed) v[static_cast<std::size_t>(dof)] = 0.0;
@@ -153,6 +154,22 @@ double EquilibriumSolver::Work::exact_step()
         s = next;
     }
     return s;
+}
+
+/// A part that nothing holds in some direction may drift off on rounding errors alone.
+void EquilibriumSolver::Work::check_reason(const State& state) const
+{
+    const double most = 10.0 * std::max({lattice.box.x, lattice.box.y, lattice.box.z});
+    for (std::size_t k = 0; k < state.u.size(); ++k) {
+        const double u = std::abs(state.u[k]);
+        if (u < (k % 6 < 3 ? most : 1e3)) continue;
+        throw ComputationFailed(
+            fmt::format("equilibrium was not reached: element {} drifts off (number {} of its six is {:.2g}), so a "
+                        "part of the specimen is held by nothing in that direction. Is it cut through entirely by "
+                        "cracks, or does a fragment touch a driven side? Hold more sides, close the cracks, or load "
+                        "in motion",
+                        k / 6, k % 6, state.u[k]));
+    }
 }
 
 /// What the last digit of every number of the state weighs, as a norm of forces.
@@ -261,6 +278,7 @@ Equilibrium EquilibriumSolver::solve(const Constraints& constraints, State start
         if (search != Search::in_double)
             search = std::abs(s - 1.0) < 0.1 && inner.iterations > 0 ? Search::going_on : Search::anew;
         add_scaled(out.state.u, s, w.d);
+        w.check_reason(out.state);
     }
     out.forces = forces(w.lattice, out.state, w.options.free_contacts);
     return out;

@@ -11,6 +11,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <fstream>
 
@@ -242,7 +244,14 @@ TEST(Load, KeepsStatesAndGoesOnFromWhatIsFinished)
     EXPECT_FALSE(r.strengths[2].tension);
     int states = 0;
     for (const auto& file : std::filesystem::directory_iterator(folder / "states"))
-        states += file.path().extension() == ".vtu";
+        if (file.path().extension() == ".vtu") {
+            ++states;
+            std::ifstream in(file.path(), std::ios::binary);
+            const std::string text{std::istreambuf_iterator<char>(in), {}};
+            for (const char* field : {"displacement", "velocity", "damage", "contact", "normal_force", "bending_moment",
+                                      "torque", "rankine_stress", "stress", "broken", "breaking_strain"})
+                EXPECT_NE(text.find(fmt::format("Name=\"{}\"", field)), std::string::npos) << field;
+        }
     EXPECT_EQ(states, 2 + 4);  // one strain in tension, and the last of each
     EXPECT_FALSE(std::filesystem::exists(folder / "partial"));
     std::filesystem::remove_all(folder);

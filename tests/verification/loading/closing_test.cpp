@@ -8,7 +8,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace craze::loading {
 namespace {
@@ -29,12 +31,16 @@ protected:
 
     static std::vector<Point> triaxial(const std::string& specimen, double eta = 0.015, std::int64_t points = 15)
     {
+        return triaxial(domain::with_defects(*cracked_, parse_specimen(specimen)), specimen, eta, points);
+    }
+    static std::vector<Point> triaxial(const domain::Domain& domain, const std::string& specimen, double eta,
+                                       std::int64_t points)
+    {
         Settings s;
         s.moduli.run = s.uniaxial.run = false;
         s.specimens = {specimen};
         s.triaxial.eta = eta;
         s.triaxial.points = points;
-        const auto domain = domain::with_defects(*cracked_, parse_specimen(specimen));
         Rig rig(domain, {}, {}, {.residual = 1e-7});
         return rig.rest(plan(s, domain.box).at(0)).points;
     }
@@ -50,12 +56,26 @@ TEST_F(Closing, DenseStaysLinearToOnePercent)
     }
 }
 
+// A closed contact beam pushes but neither bends nor twists: what is lost grows with the share of cut bonds (an eighth
+// of it in packings as dense as the domain's, more in this looser one). The paper's coating cuts 9 % of its bonds.
 TEST_F(Closing, OfClosedCracksIsAsStiffAsDense)  // [Fig. 21, dashed]
 {
-    const auto dense = triaxial("dense"), closed = triaxial("cracks closed");
-    EXPECT_NEAR(closed.back().pressure / dense.back().pressure, 1.0, 0.04);
-    EXPECT_NEAR(closed[1].pressure / dense[1].pressure, 1.0, 0.04);
-    EXPECT_GT(closed[1].closure, 0.9);
+    const auto dense = triaxial("dense");
+    const auto ratio_and_share = [&](const domain::Discretisation& specimen) {
+        const auto domain = domain::with_defects(specimen, parse_specimen("cracks closed"));
+        const auto closed = triaxial(domain, "cracks closed", 0.015, 15);
+        EXPECT_GT(closed[1].closure, 0.9);
+        const double first = closed[1].pressure / dense[1].pressure;
+        EXPECT_NEAR(closed.back().pressure / dense.back().pressure, first, 1e-3);
+        const auto cut = std::count(domain.bonds.kind.begin(), domain.bonds.kind.end(), domain::BondKind::contact_beam);
+        return std::pair{first, static_cast<double>(cut) / static_cast<double>(domain.bonds.size())};
+    };
+    const auto [many, many_cut] = ratio_and_share(*cracked_);
+    EXPECT_LT(1.0 - many, 0.25 * many_cut);
+    const auto pennies = support::random_pennies(cracked_->dense.box, 1.0e-6, 0.15, 0.0, 12);
+    const auto [few, few_cut] = ratio_and_share(support::with_pennies(cracked_->dense, pennies));
+    EXPECT_GT(few_cut, 0.08);
+    EXPECT_NEAR(few, 1.0, 0.02);
 }
 
 TEST_F(Closing, OfOneThicknessIsFlatUntilFacesTouchAndThenRises)  // [Fig. 22]
@@ -87,6 +107,7 @@ TEST_F(Closing, OfManyThicknessesRisesAtOnce)  // [Fig. 21]
 TEST_F(Closing, TheThinnerTheCloserToDense)  // [Fig. 22]
 {
     double last = triaxial("cracks closed", 0.015, 3).back().pressure;
+    EXPECT_GT(triaxial("cracks 2 nm", 0.015, 3).back().closure, 0.95) << "gamma from 0 to 1";
     for (const char* specimen : {"cracks 2 nm", "cracks 10 nm", "cracks 100 nm"}) {
         const double pressure = triaxial(specimen, 0.015, 3).back().pressure;
         EXPECT_LT(pressure, last) << specimen;

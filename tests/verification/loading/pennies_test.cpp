@@ -7,26 +7,14 @@
 #include "craze/loading/specimen.hpp"
 #include "craze/loading/theory.hpp"
 #include "support/cracked.hpp"
+#include "support/moduli.hpp"
 
 #include <gtest/gtest.h>
 
 namespace craze::loading {
 namespace {
 
-double mean_modulus(const domain::Domain& specimen)
-{
-    Rig rig(specimen, {}, {}, {.residual = 1e-5});
-    double sum = 0.0;
-    for (std::size_t a = 0; a < 3; ++a) {
-        Loading l;
-        l.axis = static_cast<int>(a);
-        l.drive[a] = {false, 1.0};
-        l.path = {1e-4};
-        const Point p = rig.rest(l).points.back();
-        sum += p.stress[l.axis] / p.strain[l.axis] / 3.0;
-    }
-    return sum;
-}
+using support::mean_modulus;
 
 // A lattice cuts whole bonds: a penny of three bond lengths acts like one about a tenth of its radius larger, a third
 // in density, beside the scatter of some twenty pennies. Hence 15 %.
