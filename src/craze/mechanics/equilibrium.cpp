@@ -91,9 +91,7 @@ bool EquilibriumSolver::Work::take_closed_set()
     stiffness->set_springs(closed_springs(contacts, gap));
     inner.set_springs(stiffness->springs());
     // A soft piece that leans on a new contact is the worst of all that a preconditioner can be wrong about.
-    std::int64_t different = 0;
-    for (std::size_t c = 0; c < closed.size(); ++c) different += closed[c] != closed_at_setup[c];
-    springs_fit = different <= 4;
+    springs_fit = closed == closed_at_setup;
     return true;
 }
 
