@@ -113,7 +113,7 @@ TEST_F(LoadingCommand, StoppedInMotionGoesOnToTheSameBits)
             "domain --import {0}/packing/elements.csv {0}/packing/bonds.csv --box \"3 um\" \"2.6 um\" \"2.6 um\" "
             "--set loading.beam.calibrate=false --set loading.moduli.run=false --set loading.uniaxial.run=false "
             "--set loading.triaxial.run=false --set loading.fracture.run=true --set loading.fracture.compression=0 "
-            "--set loading.fracture.points=40 --set loading.fracture.crossings=400 "
+            "--set loading.fracture.points=40 --set loading.fracture.crossings=4000 "
             "--set loading.output.checkpoint=0.01s --set=loading.specimens=[\\\"dense\\\"] "
             "--set=loading.fracture.specimens=[\\\"dense\\\"] --out {0}/{1}",
             folder.string(), out);
@@ -121,7 +121,8 @@ TEST_F(LoadingCommand, StoppedInMotionGoesOnToTheSameBits)
     ASSERT_EQ(run_craze(command("straight")).code, 0);
 
     const std::string partial = (folder / "stopped/loading/partial").string();
-    write("stop.sh", std::string(CRAZE_APP) + " " + command("stopped") + " & child=$!; while ! ls " + partial +
+    write("stop.sh", std::string(CRAZE_APP) + " " + command("stopped") +
+                         " & child=$!; while kill -0 $child 2>/dev/null && ! ls " + partial +
                          "/*.restart >/dev/null 2>&1; do sleep 0.01; done; kill -INT $child; wait $child; exit $?\n");
     const int status = std::system(("sh " + (folder / "stop.sh").string() + " >/dev/null 2>&1").c_str());
     ASSERT_TRUE(WIFEXITED(status));
