@@ -56,7 +56,7 @@ Json pores_json(const Analysis& a, double h)
             ++border;
         else
             sphericity.push_back(o.sphericity);
-        if (o.inscribed_radius < a.R_C) ++small, small_volume += o.volume;
+        if (!(o.inscribed_radius > a.R_C)) ++small, small_volume += o.volume;
     }
     return {{"count", a.pores.size()},
             {"at_border", border},

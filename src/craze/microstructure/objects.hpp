@@ -14,8 +14,9 @@ namespace craze::microstructure {
 struct Object {
     std::int64_t volume = 0;  ///< voxels
     /// Area towards the outside, px^2, without the sections by the border of the volume: Cauchy-Crofton over the 13
-    /// directions of the lattice (Ohser, Muecklich 2000), within 2 % for
-    /// smooth large bodies, 4 % for long ones along an axis.
+    /// directions of the lattice (Ohser, Muecklich 2000). A plane counts 0.927 (across an axis) to 1.023 of itself, by
+    /// its orientation; that averages out on round bodies of some ten voxels (within 2 %), not on flat ones along an
+    /// axis (up to 10 % low). Of bodies of a few voxels it says little: a single one has a sphericity of 1.6.
     double surface = 0.0;
     double equivalent_radius = 0.0;  ///< of the ball of this volume
     double sphericity = 0.0;         ///< surface of the ball of this volume / surface; meant for objects off the border

@@ -12,8 +12,10 @@ namespace craze::microstructure {
 /// For each voxel the diameter of the largest lattice ball that lies in the set and covers it (Hildebrand and
 /// Rueegsegger, J. Microsc. 185 (1997) 67), in steps.
 struct Thickness {
-    Volume<std::uint8_t> level;    ///< 0 outside the set, else index into `diameter`
-    std::vector<double> diameter;  ///< px, ascending; diameter[0] = 0. A plate of n voxels, n odd, has diameter n.
+    Volume<std::uint8_t> level;  ///< 0 outside the set, else index into `diameter`
+    std::vector<double>
+        diameter;  ///< px, ascending; diameter[0] = 0. A plate of n voxels
+                   ///< has diameter n for odd n and n - 1 for even n: balls have their centre in a voxel.
 };
 
 /// @param squared  squared distance of each voxel to the outside of the set, px^2 (0: outside)

@@ -68,6 +68,20 @@ TEST(Object, OfATiltedEllipsoidFindsItsAxes)
     EXPECT_NEAR(o.surface / area, 1, 0.04);
 }
 
+// What the header says of planes across an axis.
+TEST(Object, OfAPlateAlongTheAxesHasItsSurfaceToTenPercent)
+{
+    for (const int n : {1, 3}) {
+        Mask plate({70, 70, 9});
+        for (int z = 3; z < 3 + n; ++z)
+            for (int y = 5; y < 65; ++y)
+                for (int x = 5; x < 65; ++x) plate.set(x, y, z, true);
+        const auto objects = measured(plate, components(plate), squared_distance(complement(plate)));
+        ASSERT_EQ(objects.size(), 1U);
+        EXPECT_NEAR(objects[0].surface / (2.0 * 60 * 60 + 4.0 * 60 * n), 0.92, 0.02) << n;
+    }
+}
+
 TEST(Object, SurfaceLeavesOutTheSectionsByTheBorder)
 {
     const auto objects = objects_of(drawn({90, 50, 50}, [](double, double y, double z) {
