@@ -19,11 +19,14 @@ using std::numbers::pi;
 
 Vec3 vec(const Direction& d) { return {d.x, d.y, d.z}; }
 
-// Chord of the crack through `from` along +-n, m: midpoints of quarter-voxel steps that lie in crack voxels.
-double chord(const Mask& crack, const Vec3& from, const Vec3& n, double h)
+constexpr int steps_per_voxel = 4;
+constexpr int counts_per_voxel = 3 * steps_per_voxel;  // an opening is the mean of three chords
+
+// Chord of the crack through `from` along +-n: how many midpoints of quarter-voxel steps lie in crack voxels.
+int chord(const Mask& crack, const Vec3& from, const Vec3& n, double h)
 {
-    constexpr double step = 0.25;
-    constexpr int most = 4 * 256;  // no crack gapes a quarter of a thousand voxels
+    constexpr double step = 1.0 / steps_per_voxel;
+    constexpr int most = steps_per_voxel * 256;  // no crack gapes a quarter of a thousand voxels
     const Shape& s = crack.shape();
     int inside = 0;
     for (const double sign : {-1.0, 1.0})
@@ -34,25 +37,26 @@ double chord(const Mask& crack, const Vec3& from, const Vec3& n, double h)
             if (x < 0 || y < 0 || z < 0 || x >= s.nx || y >= s.ny || z >= s.nz || !crack(x, y, z)) break;
             ++inside;
         }
-    return inside * step * h;
+    return inside;
 }
 
-// Mean chord through three points of a triangle. Corners are voxel centres in the middle of the crack, where chords
+// Chords through three points of a triangle, summed. Corners are voxel centres in the middle of the crack, where chords
 // are rounded always the same way; points between are not.
-double opening_at(const Mask& crack, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& n, double h)
+int opening_at(const Mask& crack, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& n, double h)
 {
     constexpr double near = 0.6, far = 0.2;
     return (chord(crack, near * a + far * b + far * c, n, h) + chord(crack, far * a + near * b + far * c, n, h) +
-            chord(crack, far * a + far * b + near * c, n, h)) /
-           3.0;
+            chord(crack, far * a + far * b + near * c, n, h));
 }
 
 // What each triangle is, once the staircases are smoothed.
 struct Facets {
-    std::vector<Direction> normal;  // unit
-    std::vector<float> opening;     // m
-    std::vector<double> area;       // m2, one face
+    std::vector<Direction> normal;      // unit
+    std::vector<std::int32_t> opening;  // in counts: integers, so that classes and quantiles know no unit
+    std::vector<double> area;           // m2, one face
 };
+
+double metres(std::int32_t counts, double h) { return counts * h / counts_per_voxel; }
 
 Facets facets_of(const CrackSurface& surface, const Mask& crack, double h, const std::vector<Direction>& normals)
 {
@@ -72,7 +76,7 @@ Facets facets_of(const CrackSurface& surface, const Mask& crack, double h, const
             mean = norm(mean) > 0.0 ? normalized(mean) : Vec3{0.0, 0.0, 1.0};  // only where all triangles are flat
             facets.normal[t] = {static_cast<float>(mean.x), static_cast<float>(mean.y), static_cast<float>(mean.z)};
             facets.area[t] = 0.5 * faces_of(surface, t) * std::abs(dot(flat, mean));
-            facets.opening[t] = static_cast<float>(opening_at(crack, corner(0), corner(1), corner(2), mean, h));
+            facets.opening[t] = opening_at(crack, corner(0), corner(1), corner(2), mean, h);
         }
     });
     return facets;
@@ -158,7 +162,7 @@ void find_single_cracks(const CrackSurface& surface, const Facets& facets, const
         SingleCrack& c = m.cracks[part];
         ++c.triangles;
         c.area += facets.area[t];
-        c.opening += facets.area[t] * facets.opening[t];
+        c.opening += facets.area[t] * metres(facets.opening[t], h);
         add_square(tensors[part], vec(facets.normal[t]), facets.area[t]);
         for (const std::int32_t corner : surface.triangles[t]) {
             const Vec3& p = surface.vertices[static_cast<std::size_t>(corner)];
@@ -229,24 +233,22 @@ void find_directions(const Facets& facets, CrackMeasures& m)
 
 void find_openings(const Facets& facets, double h, CrackMeasures& m)
 {
-    const double step = Openings::step * h;
+    constexpr auto counts_per_class = static_cast<std::size_t>(counts_per_voxel * Openings::step);
+    static_assert(counts_per_class == counts_per_voxel * Openings::step);
+    std::vector<double> share;  // of the area, by opening in counts
     for (std::size_t t = 0; t < facets.area.size(); ++t) {
-        const auto k = static_cast<std::size_t>(facets.opening[t] / step);
-        if (k >= m.openings.share.size()) m.openings.share.resize(k + 1, 0.0);
-        m.openings.share[k] += facets.area[t] / m.area;
-        m.openings.mean += facets.area[t] / m.area * facets.opening[t];
+        const auto k = static_cast<std::size_t>(facets.opening[t]);
+        if (k >= share.size()) share.resize(k + 1, 0.0);
+        share[k] += facets.area[t] / m.area;
+        m.openings.mean += facets.area[t] / m.area * metres(facets.opening[t], h);
     }
+    m.openings.share.resize((share.size() + counts_per_class - 1) / counts_per_class, 0.0);
+    for (std::size_t k = 0; k < share.size(); ++k) m.openings.share[k / counts_per_class] += share[k];
     constexpr std::array quantile{0.1, 0.5, 0.9};
     for (std::size_t q = 0; q < 3; ++q) {
-        double below = 0.0;
-        for (std::size_t k = 0; k < m.openings.share.size(); ++k) {
-            const double next = below + m.openings.share[k];
-            if (next >= quantile[q]) {
-                m.openings.quantiles[q] = (static_cast<double>(k) + (quantile[q] - below) / m.openings.share[k]) * step;
-                break;
-            }
-            below = next;
-        }
+        std::size_t k = 0;
+        for (double below = share[0]; below < quantile[q] && k + 1 < share.size();) below += share[++k];
+        m.openings.quantiles[q] = metres(static_cast<std::int32_t>(k), h);
     }
 }
 
@@ -260,7 +262,7 @@ CrackMeasures measure(const CrackSurface& surface, const Mask& crack, double vox
     m.volume = static_cast<double>(crack.shape().voxels()) * h * h * h;
     const Incidence incidence(surface);
     m.quality = quality(surface, incidence);
-    Facets facets = facets_of(surface, crack, h, smooth_normals(surface, incidence, normal_rounds));
+    const Facets facets = facets_of(surface, crack, h, smooth_normals(surface, incidence, normal_rounds));
     const auto count = static_cast<std::int64_t>(surface.triangles.size());
     m.triangle_area = parallel_sum(count, [&](std::int64_t i) {
         const auto t = static_cast<std::size_t>(i);
@@ -282,7 +284,8 @@ CrackMeasures measure(const CrackSurface& surface, const Mask& crack, double vox
         find_directions(facets, m);
         find_openings(facets, h, m);
     }
-    m.opening_of = std::move(facets.opening);
+    m.opening_of.reserve(facets.opening.size());
+    for (const std::int32_t counts : facets.opening) m.opening_of.push_back(static_cast<float>(metres(counts, h)));
     return m;
 }
 

@@ -55,7 +55,8 @@ struct Openings {
     static constexpr double step = 0.5;  ///< px
     std::vector<double> share;           ///< of the area, class k is [k, k + 1) steps; sum 1
     double mean = 0.0;                   ///< m
-    std::array<double, 3> quantiles{};   ///< m: 10, 50 and 90 % of the area gape less
+    /// m: the least openings that 10, 50 and 90 % of the area do not exceed; whole twelfths of a voxel
+    std::array<double, 3> quantiles{};
 };
 
 struct CrackMeasures {

@@ -104,6 +104,40 @@ TEST_F(Measures, OfAPlaneThroughTheVolumeAreItsSectionWhateverItsSlope)
     }
 }
 
+TEST_F(Measures, OfAWallGapeItsThicknessInAnyUnit)
+{
+    Settings settings;
+    settings.skeleton = SkeletonKind::medial_surface;
+    for (const std::int64_t thickness : {1, 2, 3, 5}) {
+        const Mask wall =
+            support::mask_of(Shape{30, 24, 20}, [&](auto x, auto, auto) { return x >= 9 && x < 9 + thickness; });
+        for (const double size : {23.6e-9, 35.4e-9, 0.1e-6, 1e-6, 1.0}) {
+            const CrackMeasures m = measure(mesh_cracks(wall, size, settings), wall, size);
+            for (const double q : m.openings.quantiles)
+                EXPECT_DOUBLE_EQ(q / size, static_cast<double>(thickness)) << size;
+            EXPECT_NEAR(m.openings.mean / size, static_cast<double>(thickness), 1e-9) << size;
+            ASSERT_EQ(m.openings.share.size(), static_cast<std::size_t>(2 * thickness + 1)) << size;
+            EXPECT_NEAR(m.openings.share.back(), 1.0, 1e-9) << size;
+        }
+    }
+}
+
+TEST_F(Measures, QuantilesOfOpeningsAreByArea)
+{
+    // Three walls right through, 1, 2 and 4 px thick, of 14, 30 and 56 % of the length.
+    Settings settings;
+    settings.skeleton = SkeletonKind::medial_surface;
+    const Mask walls = support::mask_of(Shape{40, 20, 101}, [](auto x, auto, auto z) {
+        return z < 15 ? x == 5 : z > 15 && z < 46 ? x == 15 || x == 16 : z > 46 && x >= 25 && x < 29;
+    });
+    const CrackMeasures m = measure(mesh_cracks(walls, h, settings), walls, h);
+    ASSERT_EQ(m.cracks.size(), 3U);
+    EXPECT_NEAR(m.openings.quantiles[0] / h, 1.0, 1e-12);
+    EXPECT_NEAR(m.openings.quantiles[1] / h, 4.0, 1e-12);
+    EXPECT_NEAR(m.openings.quantiles[2] / h, 4.0, 1e-12);
+    EXPECT_NEAR(m.openings.share[4], 0.30, 0.03);
+}
+
 TEST_F(Measures, TellSingleCracksApartAndSortThem)
 {
     const Mask mask = mask_of_discs(
