@@ -154,7 +154,6 @@ void find_single_cracks(const CrackSurface& surface, const Facets& facets, const
     std::int32_t parts = 0;
     m.crack_of = connected_parts(surface, parts);
     m.cracks.resize(static_cast<std::size_t>(parts));
-    std::vector<Tensor> tensors(m.cracks.size());
     constexpr double far = std::numeric_limits<double>::infinity();
     for (SingleCrack& c : m.cracks) c.least = {far, far, far}, c.most = {-far, -far, -far};
     for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
@@ -163,7 +162,7 @@ void find_single_cracks(const CrackSurface& surface, const Facets& facets, const
         ++c.triangles;
         c.area += facets.area[t];
         c.opening += facets.area[t] * metres(facets.opening[t], h);
-        add_square(tensors[part], vec(facets.normal[t]), facets.area[t]);
+        add_square(c.fabric, vec(facets.normal[t]), facets.area[t]);
         for (const std::int32_t corner : surface.triangles[t]) {
             const Vec3& p = surface.vertices[static_cast<std::size_t>(corner)];
             c.centre += p * (facets.area[t] / 3.0);
@@ -180,7 +179,9 @@ void find_single_cracks(const CrackSurface& surface, const Facets& facets, const
         else
             c.centre = 0.5 * (c.least + c.most);
         c.radius = std::sqrt(c.area / pi);
-        const Principal p = principal(tensors[k]);
+        const Principal p = principal(c.fabric);
+        const double trace = c.fabric[0] + c.fabric[1] + c.fabric[2];
+        for (double& component : c.fabric) component /= trace > 0.0 ? trace : 1.0;
         c.normal = p.direction;
         c.flatness = p.share;
         find_borders(c, shape, h);
@@ -276,7 +277,7 @@ CrackMeasures measure(const CrackSurface& surface, const Mask& crack, double vox
     for (const SingleCrack& c : m.cracks) {
         const double a3 = c.radius * c.radius * c.radius;
         m.crack_density += a3 / m.volume;
-        add_square(m.density_tensor, c.normal, a3 / m.volume);
+        for (std::size_t k = 0; k < 6; ++k) m.density_tensor[k] += a3 / m.volume * c.fabric[k];
         for (std::size_t axis = 0; axis < 3; ++axis) m.spans[axis] |= c.spans[axis];
     }
     if (m.area > 0.0) {

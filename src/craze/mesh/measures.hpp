@@ -12,12 +12,16 @@
 
 namespace craze::mesh {
 
+/// Symmetric tensor, in the order xx, yy, zz, yz, xz, xy.
+using Tensor = std::array<double, 6>;
+
 /// A connected part of the surface.
 struct SingleCrack {
     double area = 0.0;      ///< m2, one face, staircases of voxels smoothed out
     double radius = 0.0;    ///< a, m, of the disc of this area
     double opening = 0.0;   ///< mean over the area, m
-    double flatness = 0.0;  ///< share of the area tensor along `normal`: 1 flat, 1/3 facing everywhere
+    Tensor fabric{};        ///< mean of n n over its area; trace 1 (0 without area)
+    double flatness = 0.0;  ///< share of `fabric` along `normal`: 1 flat, 1/3 facing everywhere
     Vec3 centre;            ///< m
     Vec3 normal;            ///< unit, z >= 0: principal direction of the normals
     Vec3 least, most;       ///< corners of its box, m
@@ -25,9 +29,6 @@ struct SingleCrack {
     bool at_border = false;       ///< reaches the border of the volume: larger than it looks
     std::array<bool, 3> spans{};  ///< reaches both borders along x, y, z
 };
-
-/// Symmetric tensor, in the order xx, yy, zz, yz, xz, xy.
-using Tensor = std::array<double, 6>;
 
 /// Crack surface in classes of direction of its normal, z >= 0. Equal steps of the cosine of the angle to z times
 /// equal steps of the azimuth (from x to y): every class is the same piece of the half sphere.
@@ -60,12 +61,14 @@ struct Openings {
 };
 
 struct CrackMeasures {
-    double voxel_size = 0.0;          ///< h, m
-    double volume = 0.0;              ///< of the stack, m3
-    double triangle_area = 0.0;       ///< m2, of the triangles as they are (each sheet once): includes their staircases
-    double area = 0.0;                ///< m2, one face, smoothed
-    double crack_density = 0.0;       ///< sum of a^3 / V over the single cracks (Budiansky, O'Connell 1976, for discs)
-    Tensor density_tensor{};          ///< sum of a^3 n n / V (Kachanov 1980); its trace is crack_density
+    double voxel_size = 0.0;     ///< h, m
+    double volume = 0.0;         ///< of the stack, m3
+    double triangle_area = 0.0;  ///< m2, of the triangles as they are (each sheet once): includes their staircases
+    double area = 0.0;           ///< m2, one face, smoothed
+    double crack_density = 0.0;  ///< sum of a^3 / V over the single cracks (Budiansky, O'Connell 1976, for discs)
+    /// Sum of a^3 F / V, F the single crack's `fabric`: for discs F = n n (Kachanov 1980), and a network counts in all
+    /// directions that it faces, by area. Its trace is crack_density.
+    Tensor density_tensor{};
     Tensor fabric{};                  ///< mean of n n over the area; trace 1
     double largest_share = 0.0;       ///< of the area, in the largest single crack
     std::array<bool, 3> spans{};      ///< a single crack goes through the volume along x, y, z

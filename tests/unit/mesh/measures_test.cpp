@@ -138,6 +138,31 @@ TEST_F(Measures, QuantilesOfOpeningsAreByArea)
     EXPECT_NEAR(m.openings.share[4], 0.30, 0.03);
 }
 
+TEST_F(Measures, DensityTensorOfAFlatCrackLiesOnItsNormalAndOfCrossedDiscsIsSplitByTheirAreas)
+{
+    Settings settings;
+    settings.skeleton = SkeletonKind::medial_surface;
+    const Shape shape{60, 60, 60};
+    for (const Vec3& direction : {Vec3{0, 0, 1}, Vec3{0.6, 0, 0.8}, Vec3{0.3, -0.5, 0.7}}) {
+        const Vec3 n = normalized(direction);
+        const CrackMeasures m = measured(mask_of_discs(shape, {{{30.3, 29.8, 30.1}, n, 22, 4}}), settings);
+        const Tensor flat{n.x * n.x, n.y * n.y, n.z * n.z, n.y * n.z, n.x * n.z, n.x * n.y};
+        for (std::size_t k = 0; k < 6; ++k)
+            EXPECT_NEAR(m.density_tensor[k] / m.crack_density, flat[k], 0.02) << direction.z << " component " << k;
+    }
+    for (const double second : {24.0, 16.0}) {
+        const CrackMeasures m = measured(
+            mask_of_discs(shape, {{{30, 30, 30}, {1, 0, 0}, 24, 3}, {{30, 30, 30}, {0, 1, 0}, second, 3}}), settings);
+        ASSERT_GT(m.largest_share, 0.99);
+        // Rims recede by half the thickness and half a voxel. Along the crossing a strip a few voxels wide faces
+        // between.
+        const double one = std::pow(24.0 - 2.0, 2), two = std::pow(second - 2.0, 2);
+        const Tensor split{one / (one + two), two / (one + two), 0, 0, 0, 0};
+        for (std::size_t k = 0; k < 6; ++k)
+            EXPECT_NEAR(m.density_tensor[k] / m.crack_density, split[k], 0.03) << second << " component " << k;
+    }
+}
+
 TEST_F(Measures, TellSingleCracksApartAndSortThem)
 {
     const Mask mask = mask_of_discs(
