@@ -134,7 +134,7 @@ TEST_P(AgainstCgal, SkeletonsOfRandomCracksGiveTheSameFacesPlaneByPlane)
     expect_equal(skeleton_of_slices(cracks, 2), GetParam(), "cracks");
 }
 
-INSTANTIATE_TEST_SUITE_P(Alpha, AgainstCgal, testing::Values(0.75, 0.87, 1.0, 1.5, 2.0, 3.0));
+INSTANTIATE_TEST_SUITE_P(Alpha, AgainstCgal, testing::Values(0.75, 0.87, 1.0, 1.5, 2.0, 3.0, 4.0));
 
 }  // namespace
 }  // namespace craze::mesh
