@@ -1,6 +1,7 @@
 #include "craze/microstructure/microstructure.hpp"
 
 #include "craze/core/errors.hpp"
+#include "craze/core/progress.hpp"
 #include "craze/microstructure/classification.hpp"
 #include "craze/microstructure/sheets.hpp"
 #include "craze/microstructure/threshold.hpp"
@@ -93,6 +94,11 @@ Microstructure classify(images::Gray gray, const Settings& settings)
     Classification c = classified(micro.matter, settings.R_C, settings.R_E, settings.border);
     micro.pore = std::move(c.pore);
     micro.crack = std::move(c.crack);
+    if (micro.matter.count() == micro.gray.level.shape().voxels())
+        notice(fmt::format("microstructure: no voxel is below the threshold {}: there is no void", S));
+    else if (micro.pore.count() == 0)
+        notice(fmt::format("microstructure: no void holds a ball of R_C = {} px: all of it is called crack",
+                           settings.R_C));
     return micro;
 }
 

@@ -183,7 +183,7 @@ std::vector<Step> steps(const Settings& s, const RunOptions& options)
     all.push_back({"domain", content(s.domain) + imported(s.domain), {}, with(do_domain)});
     if (!s.without_images()) all.back().after = {"microstructure", "mesh"};
     all.push_back({"loading", content(s.loading), {"domain"}, with(do_loading)});
-    all.push_back({"report", content(s.report), {"loading"}, with(do_report)});
+    all.push_back({"report", content(s.report), {"loading"}, with(do_report), true});
     return all;
 }
 

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <map>
 
 namespace craze::pipeline {
@@ -39,10 +40,54 @@ std::string stamped(const fs::path& out, const std::string& name)
     return stamp.is_object() ? stamp.value("key", "") : "";
 }
 
+/// What lies in a folder, with the time each file was written.
+std::map<fs::path, fs::file_time_type> files_in(const fs::path& folder)
+{
+    std::map<fs::path, fs::file_time_type> files;
+    std::error_code error;
+    for (auto at = fs::recursive_directory_iterator(folder, error); at != fs::recursive_directory_iterator();
+         at.increment(error)) {
+        if (error) break;
+        if (at->is_regular_file(error)) files[at->path()] = at->last_write_time(error);
+    }
+    return files;
+}
+
+/// Takes the stamp away while a step works, and gives it back if the step fails with all its files untouched.
+class StampAside {
+public:
+    explicit StampAside(fs::path folder) : folder_(std::move(folder))
+    {
+        if (fs::exists(folder_ / "stamp.json")) stamp_ = io::read_text(folder_ / "stamp.json");
+        fs::remove(folder_ / "stamp.json");
+        before_ = files_in(folder_);
+        // A file written this moment could be written again at the same time stamp.
+        const auto now = fs::file_time_type::clock::now() - std::chrono::milliseconds(100);
+        for (const auto& [file, time] : before_) fresh_ = fresh_ || time > now;
+    }
+    StampAside(const StampAside&) = delete;
+    StampAside& operator=(const StampAside&) = delete;
+    ~StampAside()
+    {
+        if (stamp_.empty() || done_ || fresh_ || files_in(folder_) != before_) return;
+        try {
+            io::write_text(folder_ / "stamp.json", stamp_);
+        } catch (const std::exception&) {  // the failure that brought us here is the one to tell
+        }
+    }
+    void done() { done_ = true; }
+
+private:
+    fs::path folder_;
+    std::string stamp_;
+    std::map<fs::path, fs::file_time_type> before_;
+    bool done_ = false, fresh_ = false;
+};
+
 Done work(const Step& step, const std::string& key, const fs::path& out)
 {
     const fs::path folder = out / step.name;
-    fs::remove(folder / "stamp.json");
+    StampAside stamp(folder);
     std::error_code error;
     fs::create_directories(folder, error);
     if (error) throw InvalidInput(fmt::format("{}: the folder cannot be made ({})", folder.string(), error.message()));
@@ -57,6 +102,7 @@ Done work(const Step& step, const std::string& key, const fs::path& out)
     summary["peak_memory_bytes"] = peak_memory();
     io::write_text(folder / "summary.json", summary.dump(2) + "\n");
     io::write_text(folder / "stamp.json", Json{{"key", key}, {"craze", version}}.dump(2) + "\n");
+    stamp.done();
     say(fmt::format("{}: done in {:.1f} s", step.name, seconds));
     return {step.name, key, false, seconds};
 }
@@ -86,8 +132,15 @@ Done run_one(const std::vector<Step>& steps, const std::string& name, const fs::
     if (step == steps.end()) throw InvalidInput(fmt::format("{}: this run has no such room", name));
     const auto keys = keys_of(steps);
     take_notices();
+    if (step->takes_what_is_there &&
+        std::ranges::none_of(steps, [&](const Step& s) { return !stamped(out, s.name).empty(); }))
+        throw InvalidInput(
+            fmt::format("{}: {} holds the results of no room; run 'craze run' first, or point --out to "
+                        "where they are",
+                        name, out.string()));
     for (const std::string& before : step->after) {
         const std::string found = stamped(out, before);
+        if (found.empty() && step->takes_what_is_there) continue;
         if (found.empty())
             throw InvalidInput(
                 fmt::format("{0}: needs the results of {1}, and {2} has none; run 'craze {1}' or 'craze run' "

@@ -17,6 +17,7 @@ struct Step {
     std::string content;             ///< all that decides its result, apart from earlier steps: settings, input files
     std::vector<std::string> after;  ///< the earlier steps whose results it reads
     std::function<Json(const std::filesystem::path& folder)> work;
+    bool takes_what_is_there = false;  ///< done by itself it needs any earlier results, not those of `after`
 };
 
 /// What became of a step.
@@ -29,7 +30,8 @@ struct Done {
 
 /// Does the steps in order. After each: `<out>/<name>/summary.json` (the step's keys, then "notices", "seconds",
 /// "peak_memory_bytes") and, last of all, `stamp.json` with its key. With `resume`, a step whose stamp holds the same
-/// key is skipped. A step that fails or is interrupted leaves no stamp, and those before it stay.
+/// key is skipped. A step that fails or is interrupted leaves no stamp, and those before it stay; one that fails before
+/// it has written anything leaves its earlier results as they were.
 std::vector<Done> run_steps(const std::vector<Step>& steps, const std::filesystem::path& out, bool resume);
 
 /// Does the one step called `name` from what earlier steps left in `out`.

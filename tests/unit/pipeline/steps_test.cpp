@@ -9,6 +9,9 @@
 
 #include <unistd.h>
 
+#include <chrono>
+#include <thread>
+
 namespace craze::pipeline {
 namespace {
 
@@ -27,7 +30,8 @@ protected:
     {
         return {{"images", first, {}, [this](const fs::path&) { return count("images"); }},
                 {"mesh", second, {"images"}, [this](const fs::path&) { return count("mesh"); }},
-                {"domain", "1", {"mesh"}, [this](const fs::path&) -> Json {
+                {"domain", "1", {"mesh"}, [this](const fs::path& folder) -> Json {
+                     if (writes) io::write_text(folder / "elements.csv", did);
                      if (fail) throw ComputationFailed("no");
                      return count("domain");
                  }}};
@@ -46,7 +50,7 @@ protected:
 
     fs::path out = fs::temp_directory_path() / ("craze_steps_" + std::to_string(getpid()));
     std::string did;
-    bool fail = false;
+    bool fail = false, writes = false;
 };
 
 TEST_F(Steps, ResumeDoesOnlyWhatChangedAndWhatFollowsFromIt)
@@ -68,8 +72,30 @@ TEST_F(Steps, AFailureKeepsWhatWasFinishedAndResumeGoesOnFromThere)
     EXPECT_EQ(did_in(chain(), true), "domain ");
 }
 
-TEST_F(Steps, ARedoneStepThatFailsIsNoLongerTrusted)
+TEST_F(Steps, ARedoneStepThatFailsBeforeItWritesLeavesItsResults)
 {
+    writes = true;
+    run_steps(chain(), out, false);
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    fail = true, writes = false;
+    EXPECT_THROW(run_one(chain(), "domain", out), ComputationFailed);
+    fail = false;
+    EXPECT_EQ(did_in(chain(), true), "");
+}
+
+TEST_F(Steps, AStepMayTakeWhatIsThereButNotNothing)
+{
+    auto steps = chain();
+    steps.back().takes_what_is_there = true;
+    EXPECT_THROW(run_one(steps, "domain", out), InvalidInput);
+    run_one(steps, "images", out);
+    run_one(steps, "domain", out);
+    EXPECT_EQ(did, "images domain ");
+}
+
+TEST_F(Steps, ARedoneStepThatFailsAfterItWroteIsNoLongerTrusted)
+{
+    writes = true;
     run_steps(chain(), out, false);
     fail = true;
     EXPECT_THROW(run_one(chain(), "domain", out), ComputationFailed);
