@@ -242,13 +242,13 @@ Study narrowed(Study study, std::int64_t triaxial_points)
 
 }  // namespace
 
-std::vector<Opening> by_opening(const synth::Settings& recipe, const Bench& bench, const Study& study,
+std::vector<Variant> by_opening(const synth::Settings& recipe, const Bench& bench, const Study& study,
                                 const std::vector<double>& factors, const Keep& keep)
 {
     if (factors.empty()) return {};
     const Study narrow = narrowed(study, 5);
     const auto discretisation = discretised(synth::make_coating(recipe), recipe, bench, study);
-    std::vector<Opening> out;
+    std::vector<Variant> out;
     for (const double factor : factors) {
         auto opened = discretisation;
         for (auto* pairs : {&opened.bonds, &opened.near})
@@ -259,12 +259,12 @@ std::vector<Opening> by_opening(const synth::Settings& recipe, const Bench& benc
     return out;
 }
 
-std::vector<BendingShare> by_bending_share(const synth::Settings& recipe, const Bench& bench, const Study& study,
-                                           const std::vector<double>& shares, const Keep& keep)
+std::vector<Variant> by_bending_share(const synth::Settings& recipe, const Bench& bench, const Study& study,
+                                      const std::vector<double>& shares, const Keep& keep)
 {
     if (shares.empty()) return {};
     const auto discretisation = discretised(synth::make_coating(recipe), recipe, bench, study);
-    std::vector<BendingShare> out;
+    std::vector<Variant> out;
     for (const double share : shares) {
         Study narrow = narrowed(study, 0);
         narrow.bending_share = share;

@@ -76,23 +76,20 @@ Candidate measure(const synth::Settings& recipe, const Bench& bench, const Study
 /// The numbers of a discretisation and of what its loadings gave, without porosities.
 Numbers numbers_of(const domain::Discretisation& discretisation, const loading::Response& response, const Study& study);
 
-/// The specimen with pores and cracks when all openings are `factor` times what they are; 0: closed cracks.
-struct Opening {
-    double factor = 1.0;
-    Numbers numbers;  ///< T2, K and the strengths of the study
+/// One specimen when one thing is changed.
+struct Variant {
+    double value = 1.0;  ///< of what is changed
+    Numbers numbers;     ///< of that specimen
 };
-/// What cannot be had together: open cracks are soft, closed ones make a specimen stronger in compression than in
-/// tension. By the short way, for each factor.
-std::vector<Opening> by_opening(const synth::Settings& recipe, const Bench& bench, const Study& study,
+/// The specimen with pores and cracks when all openings are a factor times what they are (0: closed cracks): T2, K and
+/// the strengths of the study. What cannot be had together: open cracks are soft, closed ones make a specimen stronger
+/// in compression than in tension. By the short way, for each factor.
+std::vector<Variant> by_opening(const synth::Settings& recipe, const Bench& bench, const Study& study,
                                 const std::vector<double>& factors, const Keep& keep = {});
 
-/// The same specimen when only a share of a beam's bending stress counts towards its strength [Eq. 24].
-struct BendingShare {
-    double share = 1.0;
-    Numbers numbers;  ///< the strengths of the study
-};
-std::vector<BendingShare> by_bending_share(const synth::Settings& recipe, const Bench& bench, const Study& study,
-                                           const std::vector<double>& shares, const Keep& keep = {});
+/// The strengths of the same specimen when only a share of a beam's bending stress counts [Eq. 24].
+std::vector<Variant> by_bending_share(const synth::Settings& recipe, const Bench& bench, const Study& study,
+                                      const std::vector<double>& shares, const Keep& keep = {});
 
 /// The constant thickness whose P(eta) is nearest to the T2 curve of the cracks-only specimen, m: least squares,
 /// interpolated between the thicknesses tried. 0 where the response has no such curves. [4.2.3]

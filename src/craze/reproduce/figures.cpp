@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace craze::reproduce {
@@ -168,48 +167,17 @@ Figure strengths(const Reproduction& result)
     return f;
 }
 
-/// UCS/UTS against K at eta = 1.5 % as all openings shrink: where the paper's pair lies is not on the way.
-Figure openings(const std::vector<Opening>& tried)
+/// UCS/UTS against another number as one thing changes: where the paper's pair lies is not on the way.
+void add_trade_off(Figure& figure, const std::vector<Variant>& tried, const char* against, double paper)
 {
-    Figure f = blank("openings_ratio", "Table 4, Fig. 21b", "K at eta = 1.5 %, pores and cracks [GPa]", "UCS/UTS",
-                     "All openings of the first seed times one factor, from open cracks (left) to closed ones; point: "
-                     "the paper.");
     Series line{"ours", {}, {}, Mark::line, 0}, points{"", {}, {}, Mark::points, 0};
-    for (const auto& [factor, n] : tried) {
-        const auto K = n.find("K.end");
-        const auto ratio =
-            std::find_if(n.begin(), n.end(), [](const auto& e) { return e.first.starts_with("UCS/UTS"); });
-        if (K == n.end() || ratio == n.end()) continue;
-        line.x.push_back(K->second), line.y.push_back(ratio->second);
+    for (const auto& variant : tried) {
+        const auto x = first_of(variant.numbers, against), ratio = first_of(variant.numbers, "UCS/UTS.");
+        if (x && ratio) line.x.push_back(*x), line.y.push_back(*ratio);
     }
+    if (line.x.empty()) return;
     points.x = line.x, points.y = line.y;
-    if (line.x.empty()) return f;
-    f.series = {
-        line, points, {"paper, 10 GPa", {target("K.end").paper}, {target("UCS/UTS.10").paper}, Mark::points, 1}};
-    return f;
-}
-
-/// Strengths and their ratio against the share of bending that counts in Eq. 24.
-Figure bending(const std::vector<BendingShare>& tried)
-{
-    Figure f = blank("bending_share", "Table 4", "UTS [MPa]", "UCS/UTS",
-                     "The first seed when a falling share of the bending stress counts in Eq. 24, from 1 (left, as "
-                     "printed); point: the paper.");
-    Series line{"ours", {}, {}, Mark::line, 0}, points{"", {}, {}, Mark::points, 0};
-    for (const auto& [share, n] : tried) {
-        const auto begins = [&numbers = n](const char* with) {
-            return std::find_if(numbers.begin(), numbers.end(),
-                                [with](const auto& e) { return e.first.starts_with(with); });
-        };
-        const auto UTS = begins("UTS."), ratio = begins("UCS/UTS.");
-        if (UTS == n.end() || ratio == n.end()) continue;
-        line.x.push_back(UTS->second), line.y.push_back(ratio->second);
-    }
-    points.x = line.x, points.y = line.y;
-    if (line.x.empty()) return f;
-    f.series = {
-        line, points, {"paper, 10 GPa", {target("UTS.10").paper}, {target("UCS/UTS.10").paper}, Mark::points, 1}};
-    return f;
+    figure.series = {line, points, {"paper, 10 GPa", {paper}, {target("UCS/UTS.10").paper}, Mark::points, 1}};
 }
 
 }  // namespace
@@ -223,8 +191,14 @@ std::vector<Figure> figures(const Reproduction& result)
     add_triaxial(curves, out);
     add_fracture(curves, out);
     out.push_back(strengths(result));
-    out.push_back(openings(result.openings));
-    out.push_back(bending(result.bending));
+    out.push_back(blank("openings_ratio", "Table 4, Fig. 21b", "K at eta = 1.5 %, pores and cracks [GPa]", "UCS/UTS",
+                        "All openings of the first seed times one factor, from open cracks (left) to closed ones; "
+                        "point: the paper."));
+    add_trade_off(out.back(), result.openings, "K.end", target("K.end").paper);
+    out.push_back(blank("bending_share", "Table 4", "UTS [MPa]", "UCS/UTS",
+                        "The first seed when a falling share of the bending stress counts in Eq. 24, from 1 (left, as "
+                        "printed); point: the paper."));
+    add_trade_off(out.back(), result.bending, "UTS.", target("UTS.10").paper);
     std::erase_if(out, [](const Figure& figure) { return figure.empty(); });
     return out;
 }

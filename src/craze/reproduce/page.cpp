@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace craze::reproduce {
 
@@ -18,6 +19,24 @@ bool is_fitted(const Reproduction& result, const std::string& key)
 
 /// Numbers that the size of the box decides, and so says nothing about, when it is small.
 bool of_the_box(const std::string& key) { return key == "elements" || key == "bonds"; }
+
+/// Of each variant the given numbers (column, first key that begins so). Empty where nothing was tried.
+std::string table(const std::vector<Variant>& tried, const char* title,
+                  const std::vector<std::pair<const char*, const char*>>& columns)
+{
+    if (tried.empty()) return {};
+    std::string head = "| |", rule = "|---|", rows;
+    for (const auto& [column, key] : columns) head += fmt::format(" {} |", column), rule += "---|";
+    for (const auto& variant : tried) {
+        rows += fmt::format("| {:g} |", variant.value);
+        for (const auto& [column, key] : columns) {
+            const auto found = first_of(variant.numbers, key);
+            rows += found ? fmt::format(" {:.3g} |", *found) : " - |";
+        }
+        rows += "\n";
+    }
+    return fmt::format("\n{}:\n\n{}\n{}\n{}", title, head, rule, rows);
+}
 
 }  // namespace
 
@@ -54,25 +73,19 @@ std::string page(const Reproduction& result)
     md += fmt::format(
         "\nPores only, theory at our p_DE: Eq. 18 gives {:.1f} GPa, the Hashin-Shtrikman bound {:.1f} GPa.\n",
         result.E_eq18, result.E_bound);
-    const auto cell = [](const Numbers& numbers, std::string_view begins) {
-        for (const auto& [key, value] : numbers)
-            if (key.starts_with(begins)) return fmt::format("{:.3g}", value);
-        return std::string("-");
-    };
-    if (!result.openings.empty())
-        md +=
-            "\nAll openings of the first seed times a factor (0: closed):\n\n| factor | T2, median [nm] | K at eta = 0 "
-            "| K at eta = 1.5 % | UTS | UCS | UCS/UTS |\n|---|---|---|---|---|---|---|\n";
-    for (const auto& [factor, n] : result.openings)
-        md += fmt::format("| {:g} | {} | {} | {} | {} | {} | {} |\n", factor, cell(n, "T2.median"), cell(n, "K.start"),
-                          cell(n, "K.end"), cell(n, "UTS."), cell(n, "UCS."), cell(n, "UCS/UTS"));
-    if (!result.bending.empty())
-        md +=
-            "\nA share of the bending stress in Eq. 24, first seed:\n\n| share | UTS | UCS | UCS/UTS | new contact "
-            "beams in tension | in compression |\n|---|---|---|---|---|---|\n";
-    for (const auto& [share, n] : result.bending)
-        md += fmt::format("| {:g} | {} | {} | {} | {} | {} |\n", share, cell(n, "UTS."), cell(n, "UCS."),
-                          cell(n, "UCS/UTS"), cell(n, "new.tension"), cell(n, "new.compression"));
+    md += table(result.openings, "All openings of the first seed times a factor (0: closed)",
+                {{"T2, median [nm]", "T2.median"},
+                 {"K at eta = 0", "K.start"},
+                 {"K at eta = 1.5 %", "K.end"},
+                 {"UTS", "UTS."},
+                 {"UCS", "UCS."},
+                 {"UCS/UTS", "UCS/UTS."}});
+    md += table(result.bending, "A share of the bending stress in Eq. 24, first seed",
+                {{"UTS", "UTS."},
+                 {"UCS", "UCS."},
+                 {"UCS/UTS", "UCS/UTS."},
+                 {"new contact beams in tension", "new.tension"},
+                 {"in compression", "new.compression"}});
     return md;
 }
 

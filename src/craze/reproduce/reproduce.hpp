@@ -49,8 +49,8 @@ struct Reproduction {
     Settings settings;
     std::vector<Numbers> seeds;             ///< by the short way
     std::vector<loading::Response> curves;  ///< of each seed
-    std::vector<Opening> openings;          ///< of the first seed, at the first strength of bonds
-    std::vector<BendingShare> bending;      ///< likewise
+    std::vector<Variant> openings;          ///< by factor: the first seed at the first strength of bonds
+    std::vector<Variant> bending;           ///< by share: likewise
     Numbers images;                         ///< first seed through the image chain; empty when not asked for
     double E_eq18 = 0.0, E_bound = 0.0;     ///< E for the pores alone at the mean p_DE: Eq. 18, Hashin-Shtrikman, GPa
     double seconds = 0.0;

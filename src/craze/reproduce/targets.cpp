@@ -76,6 +76,13 @@ const Target& target(const std::string& key)
                            : fmt::format("no number of the paper is called \"{}\"; did you mean \"{}\"?", key, near));
 }
 
+std::optional<double> first_of(const Numbers& numbers, std::string_view begins)
+{
+    const auto found = numbers.lower_bound(std::string(begins));
+    if (found == numbers.end() || !found->first.starts_with(begins)) return std::nullopt;
+    return found->second;
+}
+
 std::map<std::string, Statistic> statistics(const std::vector<Numbers>& seeds)
 {
     std::map<std::string, Statistic> out;

@@ -3,13 +3,18 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace craze::reproduce {
 
 /// What one coating gave: value by key, in the units of the targets.
 using Numbers = std::map<std::string, double>;
+/// The value of the first key that begins so ("UTS.": at the lowest strength of bonds); none where there is no such
+/// key.
+std::optional<double> first_of(const Numbers& numbers, std::string_view begins);
 
 struct Target {
     std::string key;    ///< "E.both.x"

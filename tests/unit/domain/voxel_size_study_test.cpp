@@ -4,16 +4,13 @@
 #include "craze/core/json.hpp"
 #include "craze/core/progress.hpp"
 #include "craze/core/random.hpp"
-#include "craze/domain/files.hpp"
 #include "craze/domain/quality.hpp"
-#include "support/data.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 
 namespace craze::domain {
 namespace {
@@ -148,22 +145,6 @@ TEST(Coarsened, IsTheMeanOfEachBlockAndCutsOffTheRest)
                     EXPECT_NEAR(coarse.level(x, y, z), sum / static_cast<double>(factor * factor * factor), 0.5);
                 }
     }
-}
-
-TEST(ReferencePacking, IsImported)
-{
-    const auto file = support::data_folder().parent_path() / "reference" / "packing_92k.txt.gz";
-    CRAZE_NEEDS_DATA(file);
-    Source source;
-    source.elements = file;
-    source.unit = 1e-6;
-    source.box = Vec3{17.6e-6, 13.2e-6, 21.2e-6};
-    const Domain d = read_domain(source);
-    const Quality q = quality(d);
-    EXPECT_NEAR(d.elements.size(), 92000, 1000);
-    EXPECT_NEAR(d.mean_radius, 0.2e-6, 0.002e-6);
-    EXPECT_NEAR(q.cardinality, 6.1, 0.15);
-    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(3 * q.fabric[k], 1.0, 0.02);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include "craze/domain/quality.hpp"
 #include "craze/domain/room.hpp"
 #include "craze/loading/rig.hpp"
-#include "support/data.hpp"
+#include "support/packings.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -71,16 +71,23 @@ TEST(Dense, IsTheSameMaterialAlongAllAxes)
 // A packing made and loaded by two independent codes: 235.0 GPa over the box, 0.297 in the interior.
 TEST(ReferencePacking, ImportedAndLoadedAlongZIsAsStiffAsFoundElsewhere)
 {
-    const auto file = support::data_folder().parent_path() / "reference" / "packing_92k.txt.gz";
+    const auto file = support::reference_packing_file();
     CRAZE_NEEDS_DATA(file);
     Source source;
     source.elements = file;
     source.unit = 1e-6;
     source.box = Vec3{17.6e-6, 13.2e-6, 21.2e-6};
+    const Domain packing = read_domain(source);
+    const Quality q = quality(packing);
+    EXPECT_NEAR(packing.elements.size(), 92'000, 1'000);
+    EXPECT_NEAR(packing.mean_radius, 0.2e-6, 0.002e-6);
+    EXPECT_NEAR(q.cardinality, 6.1, 0.15);
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(3 * q.fabric[k], 1.0, 0.02);
+
     loading::Loading tension;
     tension.drive[2] = {false, 1.0};
     tension.path = {1e-3};
-    const loading::Point p = loading::Rig(read_domain(source), {}, {}, {}).rest(tension).points.back();
+    const loading::Point p = loading::Rig(packing, {}, {}, {}).rest(tension).points.back();
     const double E = p.stress.z / p.strain.z,
                  nu = -0.5 * (p.interior_strain.x + p.interior_strain.y) / p.interior_strain.z;
     std::cout << fmt::format("packing_92k: E {:.2f} GPa, nu {:.4f}\n", 1e-9 * E, nu);
