@@ -81,6 +81,40 @@ void InnerSolver::set_up_preconditioner(const Stiffness& stiffness, std::span<co
     for (std::size_t b = 1; b < imposed_first_.size(); ++b) imposed_first_[b] += imposed_first_[b - 1];
 }
 
+/// The power of two next to the largest number of r in EA, in N: scaled by it, single precision never runs out of small
+/// numbers, however small the load, and no digit is lost. 0 where all are 0.
+double InnerSolver::unit_of(std::span<const double> r) const
+{
+    const double per_moment = 1.0 / lattice_.mean_radius;
+    double largest = 0.0;
+    for (std::size_t row = 0; row < r.size(); row += 6)
+        for (std::size_t c = 0; c < 6; ++c)
+            largest = std::max(largest, std::abs(r[row + c]) * (c < 3 ? 1.0 : per_moment));
+    return largest > 0.0 ? EA_ * std::exp2(std::round(std::log2(largest / EA_))) : 0.0;
+}
+
+/// r_ = r in units of `unit`, in the rows of one block.
+void InnerSolver::take(std::int64_t block, std::span<const double> r, double unit)
+{
+    const double per_force = 1.0 / unit, per_moment = per_force / lattice_.mean_radius;
+    const std::int64_t end = std::min<std::int64_t>((block + 1) * block_rows, lattice_.elements());
+    for (std::int64_t e = block * block_rows; e < end; ++e)
+        for (std::int64_t c = 0; c < 6; ++c)
+            r_[static_cast<std::size_t>(floats * e + c)] =
+                static_cast<float>(r[static_cast<std::size_t>(6 * e + c)] * (c < 3 ? per_force : per_moment));
+}
+
+/// d = `rows`, which answer loads in units of `unit`, in m and rad, in one block.
+void InnerSolver::give(std::int64_t block, std::span<const float> rows, double unit, std::span<double> d) const
+{
+    const double angle = unit / EA_, length = angle * lattice_.mean_radius;
+    const std::int64_t end = std::min<std::int64_t>((block + 1) * block_rows, lattice_.elements());
+    for (std::int64_t e = block * block_rows; e < end; ++e)
+        for (std::int64_t c = 0; c < 6; ++c)
+            d[static_cast<std::size_t>(6 * e + c)] =
+                double{rows[static_cast<std::size_t>(floats * e + c)]} * (c < 3 ? length : angle);
+}
+
 /// r is new and its blocks have descended, r . z so far is rz: the next direction.
 void InnerSolver::prepare(double rz)
 {
@@ -96,15 +130,10 @@ void InnerSolver::prepare(double rz)
 InnerSolver::Result InnerSolver::solve(std::span<const double> r, double target, std::int64_t most, bool go_on,
                                        std::span<double> d)
 {
-    // Scaled so that single precision never runs out of small numbers, however small the load.
-    double largest = 0.0;
-    const double per_moment = 1.0 / lattice_.mean_radius;
-    for (std::size_t k = 0; k < r.size(); ++k)
-        largest = std::max(largest, std::abs(k % 6 < 3 ? r[k] : r[k] * per_moment));
     std::fill(d.begin(), d.end(), 0.0);
     Result out;
-    if (!(largest > 0.0)) return out;
-    const double unit = EA_ * std::exp2(std::round(std::log2(largest / EA_)));
+    const double unit = unit_of(r);
+    if (!(unit > 0.0)) return out;
     if (go_on && unit_ != unit) {
         const auto change = static_cast<float>(unit_ / unit);  // a power of two: no digit is lost
         for (float& v : p_) v *= change;
@@ -112,11 +141,7 @@ InnerSolver::Result InnerSolver::solve(std::span<const double> r, double target,
     }
     unit_ = unit;
     over_blocks(stiffness_, part_, nothing, [&](std::int64_t b) {
-        for (std::int64_t e = b * block_rows; e < std::min<std::int64_t>((b + 1) * block_rows, lattice_.elements());
-             ++e)
-            for (std::int64_t c = 0; c < 6; ++c)
-                r_[static_cast<std::size_t>(floats * e + c)] =
-                    static_cast<float>(r[static_cast<std::size_t>(6 * e + c)] / unit * (c < 3 ? 1.0 : per_moment));
+        take(b, r, unit);
         std::fill_n(d_.begin() + block_length * b, block_length, 0.0F);
         return 0.0;
     });
@@ -156,13 +181,8 @@ InnerSolver::Result InnerSolver::solve(std::span<const double> r, double target,
         ++out.iterations;
         prepare(rz);
     }
-    const double length = unit / EA_ * lattice_.mean_radius, angle = unit / EA_;
     over_blocks(stiffness_, part_, nothing, [&](std::int64_t b) {
-        for (std::int64_t e = b * block_rows; e < std::min<std::int64_t>((b + 1) * block_rows, lattice_.elements());
-             ++e)
-            for (std::int64_t c = 0; c < 6; ++c)
-                d[static_cast<std::size_t>(6 * e + c)] =
-                    double{d_[static_cast<std::size_t>(floats * e + c)]} * (c < 3 ? length : angle);
+        give(b, d_, unit, d);
         return 0.0;
     });
     return out;
@@ -171,28 +191,15 @@ InnerSolver::Result InnerSolver::solve(std::span<const double> r, double target,
 /// z = M r, scaled so that single precision suffices however small r is.
 void InnerSolver::precondition(std::span<const double> r, std::span<double> z)
 {
-    const double per_moment = 1.0 / lattice_.mean_radius;
-    double largest = 0.0;
-    for (std::size_t k = 0; k < r.size(); ++k)
-        largest = std::max(largest, std::abs(k % 6 < 3 ? r[k] : r[k] * per_moment));
-    const double unit = largest > 0.0 ? largest : 1.0;
+    const double largest = unit_of(r), unit = largest > 0.0 ? largest : 1.0;
     over_blocks(stiffness_, part_, nothing, [&](std::int64_t b) {
-        for (std::int64_t e = b * block_rows; e < std::min<std::int64_t>((b + 1) * block_rows, lattice_.elements());
-             ++e)
-            for (std::int64_t c = 0; c < 6; ++c)
-                r_[static_cast<std::size_t>(floats * e + c)] =
-                    static_cast<float>(r[static_cast<std::size_t>(6 * e + c)] / unit * (c < 3 ? 1.0 : per_moment));
+        take(b, r, unit);
         return preconditioner_.descend(b, r_.data(), z_.data());
     });
     preconditioner_.solve_coarse();
-    const double length = unit / EA_ * lattice_.mean_radius, angle = unit / EA_;
     over_blocks(stiffness_, part_, nothing, [&](std::int64_t b) {
         preconditioner_.ascend(b, z_.data(), 0.0F, p_.data());
-        for (std::int64_t e = b * block_rows; e < std::min<std::int64_t>((b + 1) * block_rows, lattice_.elements());
-             ++e)
-            for (std::int64_t c = 0; c < 6; ++c)
-                z[static_cast<std::size_t>(6 * e + c)] =
-                    double{p_[static_cast<std::size_t>(floats * e + c)]} * (c < 3 ? length : angle);
+        give(b, p_, unit, z);
         return 0.0;
     });
 }

@@ -41,6 +41,9 @@ public:
                            std::span<double> d);
 
 private:
+    double unit_of(std::span<const double> r) const;
+    void take(std::int64_t block, std::span<const double> r, double unit);
+    void give(std::int64_t block, std::span<const float> rows, double unit, std::span<double> d) const;
     void precondition(std::span<const double> r, std::span<double> z);
     void prepare(double rz);
 
