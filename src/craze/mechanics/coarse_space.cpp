@@ -48,13 +48,16 @@ struct BlockEntry {
 
 struct CoarseSpace::Work {
     Aggregates groups;
-    std::vector<Vec3> arm;           ///< from the centre of its aggregate to each element, over `unit`
-    std::vector<std::uint8_t> held;  ///< bit c: number c of the element is imposed
-    double unit = 1.0, scale = 1.0;  ///< length that makes rotations displacements, m; EA / unit, N/m
+    std::vector<Vec3> arm;                           ///< from the centre of its aggregate to each element, over `unit`
+    std::vector<std::uint8_t> held;                  ///< bit c: number c of the element is imposed
+    std::vector<std::vector<BlockEntry>> beam_rows;  ///< block rows of the groups, what beams bring
+    double unit = 1.0, scale = 1.0;                  ///< length that makes rotations displacements, m; EA / unit, N/m
     Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::AMDOrdering<int>> factor;
     mutable Eigen::VectorXd load;
 
     Vector6 project(std::int32_t e, Vec3 along, Vec3 about) const;
+    template <class Visit>
+    void visit_groups(std::int32_t i, std::int32_t j, Visit&& visit) const;
     void add_bond(std::vector<BlockEntry>& row, std::int32_t group, std::int32_t i, std::int32_t j,
                   const Deformation& d) const;
 };
@@ -69,6 +72,17 @@ Vector6 CoarseSpace::Work::project(std::int32_t e, Vec3 along, Vec3 about) const
     }
     const Vec3 moment = cross(arm[k], along) + about / unit;
     return Vector6{along.x, along.y, along.z, moment.x, moment.y, moment.z};
+}
+
+/// Groups that feel a bond: not one that both ends move with, unless an end is held.
+template <class Visit>
+void CoarseSpace::Work::visit_groups(std::int32_t i, std::int32_t j, Visit&& visit) const
+{
+    const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
+    const std::int32_t g_i = groups.of[a], g_j = groups.of[b];
+    if (g_i == g_j && !held[a] && !held[b]) return;
+    if (g_i >= 0) visit(static_cast<std::size_t>(g_i));
+    if (g_j >= 0 && g_j != g_i) visit(static_cast<std::size_t>(g_j));
 }
 
 /// Block row of one aggregate: what the bond brings to it.
@@ -118,43 +132,36 @@ void CoarseSpace::set_up(const Lattice& lattice, const Stiffness& stiffness, std
                 (lattice.centre(e) - w.groups.centre[static_cast<std::size_t>(g)]) / w.unit;
     }
 
-    // Bonds within an aggregate do not feel its rigid motion, unless an end is held.
-    struct Bond {
-        std::int32_t group, bond;
-        bool spring;
-    };
     const Beams& beams = stiffness.beams();
-    const Springs& springs = stiffness.springs();
     const std::int32_t groups = w.groups.count();
-    std::vector<std::vector<Bond>> of_group(static_cast<std::size_t>(groups));
-    const auto sort_in = [&](std::int32_t i, std::int32_t j, std::int32_t b, bool spring) {
-        const std::int32_t g_i = w.groups.of[static_cast<std::size_t>(i)],
-                           g_j = w.groups.of[static_cast<std::size_t>(j)];
-        if (g_i == g_j && !w.held[static_cast<std::size_t>(i)] && !w.held[static_cast<std::size_t>(j)]) return;
-        if (g_i >= 0) of_group[static_cast<std::size_t>(g_i)].push_back({g_i, b, spring});
-        if (g_j >= 0 && g_j != g_i) of_group[static_cast<std::size_t>(g_j)].push_back({g_j, b, spring});
-    };
-    for (std::int32_t b = 0; b < beams.count; ++b)
-        sort_in(beams.i[static_cast<std::size_t>(b)], beams.j[static_cast<std::size_t>(b)], b, false);
-    for (std::int32_t b = 0; b < springs.size(); ++b)
-        sort_in(springs.i[static_cast<std::size_t>(b)], springs.j[static_cast<std::size_t>(b)], b, true);
-
-    std::vector<std::vector<BlockEntry>> rows(static_cast<std::size_t>(groups));
+    std::vector<std::vector<std::size_t>> of_group(static_cast<std::size_t>(groups));
+    for (std::size_t b = 0; b < static_cast<std::size_t>(beams.count); ++b)
+        w.visit_groups(beams.i[b], beams.j[b], [&](std::size_t g) { of_group[g].push_back(b); });
+    w.beam_rows.assign(static_cast<std::size_t>(groups), {});
     parallel_tasks(groups, [&](std::int64_t g) {
-        auto& row = rows[static_cast<std::size_t>(g)];
+        auto& row = w.beam_rows[static_cast<std::size_t>(g)];
         row.push_back({static_cast<std::int32_t>(g), Matrix6::Zero()});
-        for (const Bond& bond : of_group[static_cast<std::size_t>(g)]) {
-            const auto b = static_cast<std::size_t>(bond.bond);
-            if (bond.spring) {
-                const Vec3 t{springs.tx[b], springs.ty[b], springs.tz[b]};
-                w.add_bond(row, bond.group, springs.i[b], springs.j[b], {springs.k[b], {-t, t}, {Vec3{}, Vec3{}}});
-                continue;
-            }
+        for (const std::size_t b : of_group[static_cast<std::size_t>(g)])
             for (const Deformation& d :
                  deformations(stiffness.section(), {beams.tx[b], beams.ty[b], beams.tz[b]}, beams.inv_length[b]))
-                w.add_bond(row, bond.group, beams.i[b], beams.j[b], d);
-        }
+                w.add_bond(row, static_cast<std::int32_t>(g), beams.i[b], beams.j[b], d);
     });
+    update(stiffness);
+}
+
+void CoarseSpace::update(const Stiffness& stiffness)
+{
+    Work& w = *work_;
+    const std::int32_t groups = w.groups.count();
+    auto rows = w.beam_rows;
+    const Springs& springs = stiffness.springs();
+    for (std::size_t b = 0; b < springs.i.size(); ++b) {
+        const Vec3 t{springs.tx[b], springs.ty[b], springs.tz[b]};
+        w.visit_groups(springs.i[b], springs.j[b], [&](std::size_t g) {
+            w.add_bond(rows[g], static_cast<std::int32_t>(g), springs.i[b], springs.j[b],
+                       {springs.k[b], {-t, t}, {Vec3{}, Vec3{}}});
+        });
+    }
 
     std::vector<Eigen::Triplet<double>> entries;
     double trace = 0.0;

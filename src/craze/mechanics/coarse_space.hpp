@@ -24,6 +24,8 @@ public:
     /// @param imposed  degrees of freedom that do not move, ascending
     void set_up(const Lattice& lattice, const Stiffness& stiffness, std::span<const std::int64_t> imposed,
                 Aggregates groups);
+    /// The same beams and groups, other springs.
+    void update(const Stiffness& stiffness);
     /// Six loads per aggregate, force (EA) and moment about its centre (EA R), become displacement (R) and rotation.
     void solve(std::span<float> load) const;
     std::int32_t aggregates() const;

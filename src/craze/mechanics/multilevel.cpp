@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 namespace craze::mechanics {
 
@@ -77,6 +79,30 @@ CRAZE_INLINE float dot_row(const float* a, Floats b)
     return sum;
 }
 
+/// Elements at the ends of springs that are in one list and not in the other; both are sorted by (i, j).
+std::vector<std::uint8_t> touched_by_change(const Springs& before, const Springs& now, std::int64_t elements)
+{
+    std::vector<std::uint8_t> touched(static_cast<std::size_t>(elements), 0);
+    const auto touch = [&](const Springs& s, std::size_t b) {
+        touched[static_cast<std::size_t>(s.i[b])] = touched[static_cast<std::size_t>(s.j[b])] = 1;
+    };
+    std::size_t a = 0, b = 0;
+    while (a < before.i.size() || b < now.i.size()) {
+        const auto key = [](const Springs& s, std::size_t k) {
+            constexpr std::int32_t none = std::numeric_limits<std::int32_t>::max();
+            return k < s.i.size() ? std::pair{s.i[k], s.j[k]} : std::pair{none, none};
+        };
+        const bool same = key(before, a) == key(now, b);
+        if (same && before.k[a] == now.k[b])
+            ++a, ++b;
+        else if (same || key(before, a) < key(now, b))
+            touch(before, a++);
+        else
+            touch(now, b++);
+    }
+    return touched;
+}
+
 CRAZE_MULTIVERSION double descend_rows(const float* inverse, const float* r, float* z, std::int64_t begin,
                                        std::int64_t end)
 {
@@ -130,7 +156,16 @@ void Multilevel::set_up(const Lattice& lattice, const Stiffness& stiffness, std:
     for (std::size_t b = 1; b < imposed_first_.size(); ++b) imposed_first_[b] += imposed_first_[b - 1];
 
     find_groups(lattice, stiffness.beams());
-    update(lattice, stiffness);
+    beams_.assign(static_cast<std::size_t>(36 * elements_), 0.0);
+    stiffness.beam_diagonal(beams_);
+    make_dimensionless(beams_, stiffness.section().EA, lattice.mean_radius);
+    inverse_.assign(beams_.size() + floats, 0.0F);
+    for (std::size_t l = 0; l + 1 < levels_.size(); ++l) add_up_beams(levels_[l], lattice, stiffness);
+    springs_ = {};
+    make_inverses(lattice, stiffness, std::vector<std::uint8_t>(static_cast<std::size_t>(elements_), 1));
+    if (levels_.empty()) return;
+    top_.resize(static_cast<std::size_t>(6 * levels_.back().count));
+    coarse_.set_up(lattice, stiffness, imposed_, levels_.back().groups);
 }
 
 void Multilevel::find_groups(const Lattice& lattice, const Beams& beams)
@@ -197,42 +232,31 @@ void Multilevel::find_first_groups()
 
 void Multilevel::update(const Lattice& lattice, const Stiffness& stiffness)
 {
-    const BeamSection& section = stiffness.section();
-    const double R = lattice.mean_radius;
-    std::vector<double> whole(static_cast<std::size_t>(36 * elements_), 0.0);
-    stiffness.diagonal(whole);
-    make_dimensionless(whole, section.EA, R);
-    inverse_.assign(whole.size() + floats, 0.0F);
-    parallel_ranges(elements_, [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t e = begin; e < end; ++e) {
-            Block block = Eigen::Map<const Block>(whole.data() + 36 * e);
-            for (int c = 0; c < 6; ++c) {
-                // What nothing holds now may be pushed later, before this inverse is made anew.
-                if (!(block(c, c) > 0.0)) block(c, c) = c < 3 ? 0.5 : section.EI / (section.EA * R * R);
-                if (!(held_[static_cast<std::size_t>(e)] >> c & 1)) continue;
-                block.row(c).setZero();
-                block.col(c).setZero();
-            }
-            keep_inverse(block, inverse_.data() + 36 * e);
-        }
-    });
-    if (levels_.empty()) return;
-    for (std::size_t l = 0; l + 1 < levels_.size(); ++l) invert(levels_[l], lattice, stiffness, whole);
-    top_.resize(static_cast<std::size_t>(6 * levels_.back().count));
-    coarse_.set_up(lattice, stiffness, imposed_, levels_.back().groups);
+    make_inverses(lattice, stiffness, touched_by_change(springs_, stiffness.springs(), elements_));
+    if (!levels_.empty()) coarse_.update(stiffness);
 }
 
-/// Blocks of the groups of one level.
-void Multilevel::invert(Level& level, const Lattice& lattice, const Stiffness& stiffness, std::span<const double> whole)
+void Multilevel::make_inverses(const Lattice& lattice, const Stiffness& stiffness,
+                               const std::vector<std::uint8_t>& touched)
+{
+    springs_ = stiffness.springs();
+    invert(lattice, stiffness, touched, nullptr, beams_, inverse_);
+    for (std::size_t l = 0; l + 1 < levels_.size(); ++l)
+        invert(lattice, stiffness, touched, &levels_[l].groups, levels_[l].beams, levels_[l].inverse);
+}
+
+/// Of the groups of one level: beams that leave a group, seen from its centre.
+void Multilevel::add_up_beams(Level& level, const Lattice& lattice, const Stiffness& stiffness)
 {
     const Aggregates& groups = level.groups;
-    std::vector<double> crossing(whole.size(), 0.0);
-    stiffness.diagonal(crossing, groups.of);
+    std::vector<double> crossing(beams_.size(), 0.0);
+    stiffness.beam_diagonal(crossing, groups.of);
     make_dimensionless(crossing, stiffness.section().EA, lattice.mean_radius);
+    level.beams.assign(static_cast<std::size_t>(36 * level.count), 0.0);
     level.inverse.assign(static_cast<std::size_t>(36 * level.count + floats), 0.0F);
     parallel_ranges(level.count, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t g = begin; g < end; ++g) {
-            Block sum = Block::Zero();
+            Eigen::Map<Block> sum(level.beams.data() + 36 * g);
             for (auto m = groups.first[static_cast<std::size_t>(g)]; m < groups.first[static_cast<std::size_t>(g) + 1];
                  ++m) {
                 const auto e = static_cast<std::size_t>(groups.elements[static_cast<std::size_t>(m)]);
@@ -242,7 +266,7 @@ void Multilevel::invert(Level& level, const Lattice& lattice, const Stiffness& s
                         for (int c = 0; c < 6; ++c) {
                             const bool r_held = held_[e] >> r & 1, c_held = held_[e] >> c & 1;
                             if (r_held != c_held) own(r, c) = 0.0;
-                            if (r_held && c_held) own(r, c) = whole[36 * e + static_cast<std::size_t>(6 * r + c)];
+                            if (r_held && c_held) own(r, c) = beams_[36 * e + static_cast<std::size_t>(6 * r + c)];
                         }
                 const Vec3 a =
                     (lattice.centre(static_cast<std::int32_t>(e)) - groups.centre[static_cast<std::size_t>(g)]) /
@@ -252,7 +276,52 @@ void Multilevel::invert(Level& level, const Lattice& lattice, const Stiffness& s
                 motion(1, 3) = -a.z, motion(2, 3) = a.y, motion(2, 4) = -a.x;
                 sum.noalias() += motion.transpose() * (own * motion);
             }
-            keep_inverse(sum, level.inverse.data() + 36 * g);
+        }
+    });
+}
+
+/// Inverses of the nodes of one level that hold a touched element; without groups, of the elements themselves.
+void Multilevel::invert(const Lattice& lattice, const Stiffness& stiffness, const std::vector<std::uint8_t>& touched,
+                        const Aggregates* groups, std::span<const double> beams, std::vector<float>& inverse) const
+{
+    const auto node_of = [&](std::int32_t e) { return groups ? groups->of[static_cast<std::size_t>(e)] : e; };
+    std::vector<std::int32_t> place(beams.size() / 36, -1), nodes;
+    for (std::int32_t e = 0; e < static_cast<std::int32_t>(elements_); ++e) {
+        if (!touched[static_cast<std::size_t>(e)] || node_of(e) < 0) continue;
+        auto& at = place[static_cast<std::size_t>(node_of(e))];
+        if (at < 0) at = static_cast<std::int32_t>(nodes.size()), nodes.push_back(node_of(e));
+    }
+    const BeamSection& section = stiffness.section();
+    const double R = lattice.mean_radius;
+    std::vector<Block> blocks(nodes.size());
+    for (std::size_t k = 0; k < nodes.size(); ++k)
+        blocks[k] = Eigen::Map<const Block>(beams.data() + 36 * std::int64_t{nodes[k]});
+    for (std::size_t b = 0; b < springs_.i.size(); ++b) {
+        const std::int32_t ends[2] = {springs_.i[b], springs_.j[b]};
+        if (groups && node_of(ends[0]) == node_of(ends[1])) continue;
+        for (const std::int32_t e : ends) {
+            const std::int32_t node = node_of(e), at = node < 0 ? -1 : place[static_cast<std::size_t>(node)];
+            if (at < 0) continue;
+            Vec3 t{springs_.tx[b], springs_.ty[b], springs_.tz[b]}, turn{};
+            for (int c = 0; c < 3; ++c)
+                if (held_[static_cast<std::size_t>(e)] >> c & 1) t[c] = 0.0;
+            if (groups) turn = cross((lattice.centre(e) - groups->centre[static_cast<std::size_t>(node)]) / R, t);
+            const Eigen::Matrix<double, 6, 1> g{t.x, t.y, t.z, turn.x, turn.y, turn.z};
+            blocks[static_cast<std::size_t>(at)].noalias() += (springs_.k[b] * R / section.EA) * g * g.transpose();
+        }
+    }
+    parallel_ranges(std::ssize(nodes), [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t k = begin; k < end; ++k) {
+            Block& block = blocks[static_cast<std::size_t>(k)];
+            const auto node = static_cast<std::size_t>(nodes[static_cast<std::size_t>(k)]);
+            for (int c = 0; c < 6 && !groups; ++c) {
+                // What nothing holds now may be pushed later, before this inverse is made anew.
+                if (!(block(c, c) > 0.0)) block(c, c) = c < 3 ? 0.5 : section.EI / (section.EA * R * R);
+                if (!(held_[node] >> c & 1)) continue;
+                block.row(c).setZero();
+                block.col(c).setZero();
+            }
+            keep_inverse(block, inverse.data() + 36 * node);
         }
     });
 }

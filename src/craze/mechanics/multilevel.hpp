@@ -21,7 +21,7 @@ class Multilevel {
 public:
     /// @param imposed  degrees of freedom that do not move, ascending
     void set_up(const Lattice& lattice, const Stiffness& stiffness, std::span<const std::int64_t> imposed);
-    /// The same groups, other springs.
+    /// The same beams and groups, other springs: what these do not touch stays as it is.
     void update(const Lattice& lattice, const Stiffness& stiffness);
 
     /// z = D^-1 r of the elements of one block, and the loads of the groups of its first level. Gives r . (what both
@@ -36,6 +36,7 @@ private:
     struct Level {
         std::vector<std::int32_t> parent;         ///< of each node of the level below, -1 for none
         std::vector<float> arm;                   ///< from the parent's centre to the node, R, shape (nodes below, 4)
+        std::vector<double> beams;                ///< what beams bring to D, shape (nodes, 6, 6); of the top level none
         std::vector<float> inverse;               ///< shape (nodes, 6, 6); of the top level none
         mutable std::vector<float> load, answer;  ///< shape (nodes, 8)
         Aggregates groups;                        ///< of elements
@@ -43,10 +44,15 @@ private:
     };
     void find_groups(const Lattice& lattice, const Beams& beams);
     void find_first_groups();
-    void invert(Level& level, const Lattice& lattice, const Stiffness& stiffness, std::span<const double> whole);
+    void make_inverses(const Lattice& lattice, const Stiffness& stiffness, const std::vector<std::uint8_t>& touched);
+    void add_up_beams(Level& level, const Lattice& lattice, const Stiffness& stiffness);
+    void invert(const Lattice& lattice, const Stiffness& stiffness, const std::vector<std::uint8_t>& touched,
+                const Aggregates* groups, std::span<const double> beams, std::vector<float>& inverse) const;
 
     std::int64_t elements_ = 0;
+    std::vector<double> beams_;   ///< of elements: what beams bring to D, shape (n, 6, 6)
     std::vector<float> inverse_;  ///< of elements, shape (n, 6, 6)
+    Springs springs_;             ///< those that the inverses know
     std::vector<Level> levels_;
     std::vector<std::int32_t> first_group_;  ///< of the first level, per block
     std::vector<std::uint8_t> held_;         ///< bit c: number c of the element is imposed

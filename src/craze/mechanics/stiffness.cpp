@@ -185,40 +185,33 @@ void add_end_block(double* block, const BeamSection& s, const Vec3& t, double in
 
 }  // namespace
 
-void Stiffness::diagonal(std::span<double> blocks, std::span<const std::int32_t> group) const
+void Stiffness::beam_diagonal(std::span<double> blocks, std::span<const std::int32_t> group) const
 {
     assert(std::ssize(blocks) == 36 * elements_);
-    const auto within = [&](std::int32_t i, std::int32_t j) {
-        return !group.empty() && group[static_cast<std::size_t>(i)] == group[static_cast<std::size_t>(j)];
-    };
     const auto add = [&](const Share& s, const Beams& beams, std::int64_t begin, std::int64_t end) {
         for (auto b = static_cast<std::size_t>(begin); b < static_cast<std::size_t>(end); ++b) {
-            if (within(beams.i[b], beams.j[b])) continue;
+            const auto i = static_cast<std::size_t>(beams.i[b]), j = static_cast<std::size_t>(beams.j[b]);
+            if (!group.empty() && group[i] == group[j]) continue;
             const Vec3 t{beams.tx[b], beams.ty[b], beams.tz[b]};
             const double inv_L = beams.inv_length[b];
-            if (beams.i[b] >= s.begin)
-                add_end_block(blocks.data() + 36 * std::int64_t{beams.i[b]}, section_, t, inv_L, 1.0);
-            if (beams.j[b] < s.end)
-                add_end_block(blocks.data() + 36 * std::int64_t{beams.j[b]}, section_, t, inv_L, -1.0);
-        }
-    };
-    const auto add_axial = [&](const Share& s, const Springs& springs, std::int64_t begin, std::int64_t end) {
-        for (auto b = static_cast<std::size_t>(begin); b < static_cast<std::size_t>(end); ++b) {
-            if (within(springs.i[b], springs.j[b])) continue;
-            const Vec3 t{springs.tx[b], springs.ty[b], springs.tz[b]};
-            if (springs.i[b] >= s.begin)
-                add_projector(blocks.data() + 36 * std::int64_t{springs.i[b]}, 0.0, springs.k[b], t);
-            if (springs.j[b] < s.end)
-                add_projector(blocks.data() + 36 * std::int64_t{springs.j[b]}, 0.0, springs.k[b], t);
+            if (beams.i[b] >= s.begin) add_end_block(blocks.data() + 36 * i, section_, t, inv_L, 1.0);
+            if (beams.j[b] < s.end) add_end_block(blocks.data() + 36 * j, section_, t, inv_L, -1.0);
         }
     };
     parallel_tasks(std::ssize(shares_), [&](std::int64_t k) {
         const Share& s = shares_[static_cast<std::size_t>(k)];
         add(s, s.border_beams, 0, s.border_beams.count);
         add(s, beams_, s.beam_begin, s.beam_end);
-        add_axial(s, s.border_springs, 0, s.border_springs.size());
-        add_axial(s, springs_, s.spring_begin, s.spring_end);
     });
+}
+
+void Stiffness::diagonal(std::span<double> blocks) const
+{
+    beam_diagonal(blocks);
+    for (std::size_t b = 0; b < springs_.i.size(); ++b)
+        for (const std::int32_t end : {springs_.i[b], springs_.j[b]})
+            add_projector(blocks.data() + 36 * std::int64_t{end}, 0.0, springs_.k[b],
+                          {springs_.tx[b], springs_.ty[b], springs_.tz[b]});
 }
 
 }  // namespace craze::mechanics

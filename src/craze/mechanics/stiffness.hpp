@@ -43,8 +43,10 @@ public:
     void apply(std::span<const double> u, std::span<double> f, bool with_springs = true) const;
 
     /// Diagonal 6x6 block of each element, shape (n, 6, 6), added to `blocks`.
-    /// @param group  if not empty, of each element: bonds within a group are left out
-    void diagonal(std::span<double> blocks, std::span<const std::int32_t> group = {}) const;
+    void diagonal(std::span<double> blocks) const;
+    /// The same of beams alone.
+    /// @param group  if not empty, of each element: beams within a group are left out
+    void beam_diagonal(std::span<double> blocks, std::span<const std::int32_t> group = {}) const;
 
     std::int64_t elements() const { return elements_; }
     const Beams& beams() const { return beams_; }

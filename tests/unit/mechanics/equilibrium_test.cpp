@@ -368,6 +368,46 @@ TEST(Multilevel, IsSymmetricPositiveAndLeavesImposedDegreesOfFreedomAlone)
     for (const auto dof : held.dof) EXPECT_EQ(on_a[static_cast<std::size_t>(8 * (dof / 6) + dof % 6)], 0.0F);
 }
 
+TEST(Multilevel, ToldOfOtherSpringsAnswersAsIfMadeAnew)
+{
+    const Lattice lattice = make_lattice(cracked(3000, 2), {});
+    Stiffness stiffness(lattice, lattice.kind);
+    const Constraints held = squeezed(lattice, 1e-3);
+    const auto springs_of = [&](std::int32_t first, double stiffer) {
+        Springs springs;
+        for (std::int32_t p = first; p < lattice.free.size(); p += 3) {
+            const auto k = static_cast<std::size_t>(p);
+            springs.add(lattice.free.i[k], lattice.free.j[k],
+                        {lattice.free.tx[k], lattice.free.ty[k], lattice.free.tz[k]},
+                        lattice.contact_stiffness * (p % 2 == 0 ? stiffer : 1.0));
+        }
+        return springs;
+    };
+    const std::int64_t blocks = (lattice.elements() + block_rows - 1) / block_rows;
+    std::vector<float> r(static_cast<std::size_t>(8 * blocks * block_rows), 0.0F);
+    Random random(3);
+    for (std::size_t k = 0; k < 6 * lattice.r.size(); ++k)
+        r[8 * (k / 6) + k % 6] = static_cast<float>(random.uniform(-1, 1));
+    const auto answer = [&](Multilevel& preconditioner) {
+        std::vector<float> z(r.size(), 0.0F), p(r.size(), 0.0F);
+        for (std::int64_t b = 0; b < blocks; ++b) preconditioner.descend(b, r.data(), z.data());
+        preconditioner.solve_coarse();
+        for (std::int64_t b = 0; b < blocks; ++b) preconditioner.ascend(b, z.data(), 0.0F, p.data());
+        return p;
+    };
+    Multilevel told, anew;
+    stiffness.set_springs(springs_of(0, 1.0));
+    told.set_up(lattice, stiffness, held.dof);
+    const auto before = answer(told);
+    for (const double stiffer : {1.0, 2.0}) {  // others; then the same pairs with other values
+        stiffness.set_springs(springs_of(1, stiffer));
+        told.update(lattice, stiffness);
+        anew.set_up(lattice, stiffness, held.dof);
+        EXPECT_EQ(answer(told), answer(anew));
+        EXPECT_NE(answer(told), before);
+    }
+}
+
 TEST(Aggregates, HoldEveryBondedElementOnceAndAreConnected)
 {
     const Lattice lattice = make_lattice(cracked(900, 2), {});
