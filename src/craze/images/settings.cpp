@@ -49,7 +49,7 @@ void describe(Schema& schema, Settings& s)
         schema.quantity("length", t.length, Dimension::fraction, {0.05, 1.0},
                         "notch: shortest stripe removed, as a share of the slice");
         schema.quantity("protect", t.protect, Dimension::pixel, {2, 1e5},
-                        "notch: variations across the stripes longer than this are kept");
+                        "notch: variations across the stripes longer than this, or than half the slice, are kept");
         schema.integer("levels", t.levels, {1, 10}, "wavelet: levels of decomposition");
         schema.number("damping", t.damping, {0.1, 100}, "wavelet: width of the damped band, waves per slice");
     });

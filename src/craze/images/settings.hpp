@@ -36,7 +36,7 @@ struct Stripes {
     Method method = Method::notch;
     int axis = 0;             ///< 0: stripes run along x (the paper's ion beam), 1: along y
     double length = 0.5;      ///< shortest stripe removed, as a share of the slice's extent along the stripes
-    double protect = 64.0;    ///< px: variations across the stripes longer than this are kept
+    double protect = 256.0;   ///< px: variations across the stripes longer than this, or half the slice, are kept
     std::int64_t levels = 7;  ///< wavelet: levels of decomposition
     double damping = 25.0;    ///< wavelet: width of the damped band, in waves per slice
 };

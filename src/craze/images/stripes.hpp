@@ -18,9 +18,10 @@ namespace craze::images {
 /// around the axis across the stripes: coefficient (k along, m across) loses the share
 ///     exp(-(k length)^2 / 2) (1 - exp(-ln 2 (m protect / (2 extent))^2)),
 /// so that the mean and what varies slowly across the stripes stay. Only the few rows of the transform with small k
-/// are computed. Levels that are not the solid's, or far from what the transform says of their surroundings, are
-/// replaced by that, so that pores, cracks and their rims neither draw stripes nor fade. Of what is left, power c^2
-/// loses the share max(0, 1 - 2 n^2 / c^2) only, n the spread of the solid's levels: noise is no stripe.
+/// are computed. Levels far from what the transform says of their surroundings, and their neighbours, are replaced by
+/// that, so that pores, cracks and their rims neither draw stripes nor fade. Of what is left, coefficients lose
+/// Wiener's share only, max(0, 1 - n^2 / P), n the spread of the solid's levels and P the mean of c^2 over 33
+/// neighbouring m: noise is no stripe.
 ///
 /// wavelet: the slice is taken apart into `levels` levels of Daubechies wavelets; in each band that varies across
 /// the stripes and not along them, coefficients with k <= damping along the stripes are damped (Muench et al. 2009).

@@ -2,6 +2,7 @@
 
 #include "craze/core/progress.hpp"
 #include "craze/images/images.hpp"
+#include "craze/images/non_local_means.hpp"
 #include "craze/io/volume_file.hpp"
 #include "craze/microstructure/classification.hpp"
 #include "craze/microstructure/threshold.hpp"
@@ -53,6 +54,43 @@ TEST(Chain, RecoversTheVoidsAndThinCracksOfTheKnownCoating)
     EXPECT_NEAR(done.sigma, 12.0, 1.0);
     EXPECT_GE(dice, 0.984);
     EXPECT_GE(recall, 0.965);
+}
+
+// How the reference figures of this coating were found, 0.984 and 0.989: non-local means alone on 72^3 voxels, where
+// Otsu on the raw levels gave 0.970 and 0.963. From crop to crop they scatter by more than a hundredth; this one starts
+// from 0.978 and 0.968.
+TEST(NonLocalMeans, AloneReachTheReferenceOnACropOfTheKnownCoating)
+{
+    const auto data = support::data_folder() / "known_truth";
+    CRAZE_NEEDS_DATA(data);
+#ifdef CRAZE_SANITIZED
+    GTEST_SKIP() << "takes minutes under sanitizers";
+#endif
+    const auto stack = io::read_volume<std::uint8_t>(data / "stack.tif"),
+               truth = io::read_volume<std::uint8_t>(data / "truth_matter_255.tif");
+    const Shape shape{72, 72, 72};
+    Volume<std::uint8_t> raw(shape);
+    Mask matter(shape);
+    for (std::int64_t z = 0; z < shape.nz; ++z)
+        for (std::int64_t y = 0; y < shape.ny; ++y)
+            for (std::int64_t x = 0; x < shape.nx; ++x)
+                raw(x, y, z) = stack(x, y, z), matter.set(x, y, z, truth(x, y, z) != 0);
+    const Mask voids = complement(matter), cracks = microstructure::classified(matter, 8.5, 4.5).crack;
+    const auto judge = [&](const Volume<std::uint8_t>& level, std::optional<int> S) {
+        const Mask seen = complement(microstructure::matter_of(level, S.value_or(0)));
+        const double dice = 2.0 * static_cast<double>(intersection(voids, seen).count()) /
+                            static_cast<double>(voids.count() + seen.count());
+        const double recall =
+            static_cast<double>(intersection(cracks, seen).count()) / static_cast<double>(cracks.count());
+        std::printf("S %d, Dice %.4f, crack recall %.4f\n", S.value_or(0), dice, recall);
+        return std::pair{dice, recall};
+    };
+    const auto before = judge(raw, microstructure::otsu_threshold(microstructure::histogram(raw)));
+    const auto clean = non_local_means(raw, {21, 5, true, 12.0, 0.6 * 12.0});
+    const auto after = judge(clean, microstructure::moments_threshold(microstructure::histogram(clean)));
+    EXPECT_LT(before.second, 0.970);
+    EXPECT_GE(after.first, 0.984);
+    EXPECT_GE(after.second, 0.989);
 }
 
 }  // namespace
