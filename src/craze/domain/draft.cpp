@@ -152,6 +152,9 @@ Domain finish(Draft draft, const Source& source)
     sort_links(draft.near);
 
     d.elements = std::move(draft.elements);
+    double dense_volume = 0.0;
+    for (const double r : d.elements.r) dense_volume += 4.0 / 3.0 * std::numbers::pi * r * r * r;
+    d.dense_volume = dense_volume = draft.dense_volume.value_or(dense_volume);
     for (const Draft::Link& b : draft.bonds) {
         d.bonds.i.push_back(static_cast<std::int32_t>(b.i));
         d.bonds.j.push_back(static_cast<std::int32_t>(b.j));
@@ -186,12 +189,7 @@ Domain finish(Draft draft, const Source& source)
             d.near.thickness.push_back(0.0);
         }
     }
-    if (draft.dense_volume) {
-        d.dense_volume = *draft.dense_volume;
-    } else {
-        d.dense_volume = 0.0;
-        for (const double r : d.elements.r) d.dense_volume += 4.0 / 3.0 * std::numbers::pi * r * r * r;
-    }
+    d.dense_volume = dense_volume;
     return d;
 }
 

@@ -4,6 +4,7 @@
 #include "craze/core/index.hpp"
 #include "craze/core/units.hpp"
 #include "craze/domain/draft.hpp"
+#include "craze/domain/validity.hpp"
 #include "craze/domain/vtkhdf.hpp"
 #include "craze/io/atomic_file.hpp"
 
@@ -142,10 +143,39 @@ void write_domain(const Domain& d, const std::string& format, const fs::path& fo
                                    nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest)));
 }
 
+std::string format_of(const Source& source)
+{
+    return source.format == "auto" ? guessed_format(source.elements) : source.format;
+}
+
+namespace {
+
+Domain from_vtkhdf(const Source& source)
+{
+    const auto needs = [&](bool good, const char* what) {
+        if (!good) throw InvalidInput(fmt::format("{}: {}", source.elements.string(), what));
+    };
+    needs(source.unit == 1.0, "a VTKHDF file of craze is in metres; needs no unit");
+    needs(source.near.empty(), "a VTKHDF file of craze holds its near pairs; needs no file of them");
+    Domain d = read_vtkhdf(source.elements);
+    if (source.box) d.box = *source.box;
+    if (source.mean_radius) d.mean_radius = *source.mean_radius;
+    if (source.box || source.mean_radius)
+        check_domain(d, [&](Part part, std::size_t k) {
+            return fmt::format("{}: {} {}", source.elements.string(), name_of(part), k);
+        });
+    return d;
+}
+
+}  // namespace
+
 Domain read_domain(const Source& source)
 {
-    const std::string format = source.format == "auto" ? guessed_format(source.elements) : source.format;
-    if (format == "vtkhdf") return read_vtkhdf(source.elements);
+    const std::string format = format_of(source);
+    if (!source.bonds.empty() && format != "csv" && format != "yade")
+        throw InvalidInput(fmt::format("{}: the format {} holds its bonds in one file; needs no file of bonds, got {}",
+                                       source.elements.string(), format, source.bonds.string()));
+    if (format == "vtkhdf") return from_vtkhdf(source);
     Draft draft;
     draft.elements_file = source.elements;
     draft.bonds_file = source.bonds.empty() ? source.elements : source.bonds;

@@ -28,7 +28,8 @@ namespace craze::domain {
 const std::vector<std::string>& written_formats();
 
 /// Writes the domain into `folder` under the names of the table.
-/// @param density  of the elements' matter, kg/m3, for the formats that ask for one: rho_D box / dense_volume
+/// @param density  rho_D of the dense ceramic, kg/m3, for the formats that ask for one; the elements get
+///                 rho_D box / dense_volume, so that they weigh what the ceramic does
 /// @throws InvalidInput  when the format is unknown or the folder cannot be written
 void write_domain(const Domain& domain, const std::string& format, const std::filesystem::path& folder,
                   double density = 6060.0);
@@ -36,10 +37,10 @@ void write_domain(const Domain& domain, const std::string& format, const std::fi
 /// Where a domain comes from.
 struct Source {
     std::filesystem::path elements;     ///< the file, or the first of several
-    std::filesystem::path bonds;        ///< csv, yade; empty: bonds are made from the elements
-    std::filesystem::path near;         ///< empty: near pairs are found
+    std::filesystem::path bonds;        ///< csv, yade; empty: bonds are made, where the elements' file holds none
+    std::filesystem::path near;         ///< not vtkhdf, which holds them; empty: near pairs are found
     std::string format = "auto";        ///< one of the table; auto: by ending and content
-    double unit = 1.0;                  ///< m: one of the file's lengths
+    double unit = 1.0;                  ///< m: one of the file's lengths; vtkhdf is in metres
     std::optional<Vec3> box;            ///< m; none: as the file says, else the least box that starts at 0
     std::optional<double> mean_radius;  ///< m; none: as the file says, else the mean
     Bonding bonding;                    ///< for bonds and near pairs that are not given
@@ -48,7 +49,10 @@ struct Source {
 /// Reads and checks. Elements keep their order unless that is far from a Morton curve; bonds are sorted by (i, j).
 /// @throws InvalidInput  naming file and line: no number, not finite, radius not positive, centre outside the box,
 ///                       one centre inside another element, index out of range, self bond, bond twice, T not in [0,
-///                       L_0]
+///                       L_0], an end before all that was announced; also when R_DE is not that of the elements
 Domain read_domain(const Source& source);
+/// The format of the table that `source` is in, told from the file where it says auto.
+/// @throws InvalidInput  when it cannot be told
+std::string format_of(const Source& source);
 
 }  // namespace craze::domain

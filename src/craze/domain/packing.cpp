@@ -97,6 +97,7 @@ Elements pack_elements(const Vec3& box, const Recipe& recipe, PackingReport* rep
     // FIRE with the constants of Bitzek et al. 2006; the step is bounded by the stiffest oscillation.
     constexpr double dt_most = 0.5, alpha_start = 0.1;
     double dt = 0.1, alpha = alpha_start, skin = 0.5, residual = 1.0;
+    double mean_overlap = 0.0;
     std::int64_t downhill = 0, iteration = 0, list_age = 0;
     constexpr std::int64_t most_iterations = 20000;
     bool listed = false;
@@ -108,7 +109,7 @@ Elements pack_elements(const Vec3& box, const Recipe& recipe, PackingReport* rep
             list_age = 0;
         }
         const Spheres::Sums s = spheres.push();
-        const double mean_overlap = s.overlap / static_cast<double>(std::max<std::int64_t>(s.contacts, 1));
+        mean_overlap = s.overlap / static_cast<double>(std::max<std::int64_t>(s.contacts, 1));
         residual = std::sqrt(s.force2 / static_cast<double>(n)) / std::max(mean_overlap, 1e-9);
         if (residual < 1e-2 || (mean_overlap < 0.0067 && s.most < 0.0196 && residual < 0.1)) break;
         if (iteration % 16 == 0) check_interrupt();
@@ -129,7 +130,7 @@ Elements pack_elements(const Vec3& box, const Recipe& recipe, PackingReport* rep
         if (++list_age; !listed)
             skin = std::clamp(list_age > 20 ? 0.8 * skin : list_age < 10 ? 1.25 * skin : skin, 0.02, 0.6);
     }
-    if (report) *report = {iteration, residual, watch.seconds()};
+    if (report) *report = {iteration, residual, 0.5 * mean_overlap, iteration < most_iterations, watch.seconds()};
 
     for (std::int64_t k = 0; k < n; ++k) cloud.centre[static_cast<std::size_t>(k)] = spheres.centre(k);
     cloud = sorted(cloud, edges);

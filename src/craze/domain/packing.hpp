@@ -22,6 +22,8 @@ struct Recipe {
 struct PackingReport {
     std::int64_t iterations = 0;
     double residual = 0.0;  ///< RMS net force over mean contact force
+    double overlap = 0.0;   ///< mean of the overlaps over 2 R_DE
+    bool settled = false;   ///< false: stopped at the greatest number of steps
     double seconds = 0.0;
 };
 

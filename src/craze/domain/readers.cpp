@@ -148,7 +148,9 @@ public:
         for (; !at_end_; section()) {}
         if (static_cast<std::int64_t>(draft_.elements.r.size()) != atoms_)
             lines_.refuse(fmt::format("the file ends after {} of {} atoms", draft_.elements.r.size(), atoms_));
-        draft_.has_bonds = true;
+        if (static_cast<std::int64_t>(draft_.bonds.size()) != bonds_)
+            lines_.refuse(fmt::format("the file ends after {} of {} bonds", draft_.bonds.size(), bonds_));
+        draft_.has_bonds = bonds_ > 0;
     }
 
 private:
@@ -166,6 +168,7 @@ private:
             if ((first >= 'A' && first <= 'Z')) break;
             if (word_is(1, "atoms")) atoms_ = lines_.integer(0, "the number of atoms");
             if (word_is(1, "bonds")) bonds_ = lines_.integer(0, "the number of bonds");
+            if (word_is(3, "xy")) lines_.refuse("tilts the box; needs a box of right angles");
             for (int axis = 0; axis < 3; ++axis)
                 if (word_is(2, std::array{"xlo", "ylo", "zlo"}[static_cast<std::size_t>(axis)])) {
                     low_[axis] = lines_.real(0, "the box");
@@ -211,12 +214,23 @@ private:
         advance();
     }
 
+    /// The element of an atom's number in this line.
+    std::int64_t atom(std::size_t k, const char* what)
+    {
+        const std::int64_t id = lines_.integer(k, what);
+        if (id < 1 || id > atoms_) lines_.refuse(fmt::format("names atom {}; there are 1 to {}", id, atoms_));
+        return id - 1;
+    }
+
     void read_bonds()
     {
         for (std::int64_t k = 0; k < bonds_; ++k) {
             if (!advance()) lines_.refuse(fmt::format("the file ends after {} of {} bonds", k, bonds_));
-            Draft::Link bond{lines_.integer(2, "the first atom") - 1, lines_.integer(3, "the second atom") - 1,
-                             lines_.integer(1, "the bond type") == 2, 0.0, lines_.number()};
+            const std::int64_t type = lines_.integer(1, "the bond type");
+            if (type != 1 && type != 2)
+                lines_.refuse(fmt::format("needs bond type 1 (beam) or 2 (contact beam), got {}", type));
+            Draft::Link bond{atom(2, "the first atom"), atom(3, "the second atom"), type == 2, 0.0, lines_.number()};
+            if (bond.i == bond.j) lines_.refuse(fmt::format("joins atom {} to itself", bond.i + 1));
             if (const std::size_t T = lines_.comment().find("T = "); T != std::string_view::npos) {
                 const std::string_view number = lines_.comment().substr(T + 4);
                 if (std::from_chars(number.data(), number.data() + number.size(), bond.thickness).ec != std::errc{})

@@ -65,6 +65,14 @@ Domain pack(const Vec3& box, double mean_radius, const Settings& s)
     Elements elements = pack_elements(box, recipe(s, mean_radius), &report);
     say(fmt::format("domain: {} elements packed in {} steps, {:.1f} s", elements.size(), report.iterations,
                     report.seconds));
+    if (!report.settled)
+        notice(fmt::format("domain: the packing has not come to rest after {} steps (residual {:.2g})",
+                           report.iterations, report.residual));
+    if (report.overlap > 0.025)
+        notice(
+            fmt::format("domain: elements overlap by {:.1f} % on average: the packing is squeezed; a lower "
+                        "domain.density or less dispersion lets them just touch",
+                        100.0 * report.overlap));
     return join(std::move(elements), box, mean_radius, {s.cardinality, s.near_gap}, s.periodic);
 }
 
@@ -113,7 +121,10 @@ Discretisation as_discretisation(Domain domain)
 Discretisation import_domain(const Settings& s)
 {
     check(s);
-    return as_discretisation(read_domain(source(s)));
+    const Source from = source(s);
+    Discretisation d = as_discretisation(read_domain(from));
+    if (format_of(from) == "vtkhdf") read_defects_vtkhdf(from.elements, d);
+    return d;
 }
 
 Discretisation discretise(Domain domain, const microstructure::Microstructure& micro, const mesh::CrackSurface& surface,
@@ -131,12 +142,12 @@ Discretisation discretise(Domain domain, const microstructure::Microstructure& m
     return d;
 }
 
-void save(const Discretisation& discretisation, const Settings& s, const fs::path& folder)
+void save(const Discretisation& discretisation, const Settings& s, const fs::path& folder, double density)
 {
     write_vtkhdf(discretisation, folder / "domain.vtkhdf");
     if (s.write.empty()) return;
     const Domain specimen = with_defects(discretisation, {});
-    for (const std::string& format : s.write) write_domain(specimen, format, folder / "specimen" / format);
+    for (const std::string& format : s.write) write_domain(specimen, format, folder / "specimen" / format, density);
 }
 
 Discretisation load_discretisation(const fs::path& folder)

@@ -64,14 +64,15 @@ void describe(Schema& schema, Settings& settings);
 /// @throws InvalidInput  naming the key; also when a file to import is not there
 void check(const Settings& settings);
 
-/// What makes two dense domains the same material whatever their box: for calibrations on a smaller one.
+/// What makes two dense domains the same material whatever their box.
 /// @param mean_radius  R_DE, m
 Recipe recipe(const Settings& settings, double mean_radius);
 
 /// A dense, bonded domain of the settings' recipe in a box of edges `box` (m).
 Domain pack(const Vec3& box, double mean_radius, const Settings& settings);
 
-/// The domain that `settings.import_from` names, without images: its contact beams are its cut bonds.
+/// The domain that `settings.import_from` names, without images: its contact beams are its cut bonds. A domain.vtkhdf
+/// that `save` wrote brings its pores and cracks.
 /// @throws InvalidInput  as read_domain does
 Discretisation import_domain(const Settings& settings);
 /// The same for a domain at hand: no element in a pore, contact beams cut with T1 = T2 = T.
@@ -86,7 +87,9 @@ Discretisation discretise(Domain domain, const microstructure::Microstructure& m
                           const Settings& settings);
 
 /// Writes domain.vtkhdf (dense, with what the defects take) and the formats asked for into `folder`.
-void save(const Discretisation& discretisation, const Settings& settings, const std::filesystem::path& folder);
+/// @param density  rho_D of the dense ceramic, kg/m3, for the formats that ask for one
+void save(const Discretisation& discretisation, const Settings& settings, const std::filesystem::path& folder,
+          double density = 6060.0);
 /// @throws InvalidInput  when domain.vtkhdf is missing or damaged
 Discretisation load_discretisation(const std::filesystem::path& folder);
 

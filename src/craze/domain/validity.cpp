@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <span>
 
 namespace craze::domain {
@@ -15,6 +16,8 @@ namespace craze::domain {
 std::string name_of(Part part) { return part == Part::element ? "element" : part == Part::bond ? "bond" : "near pair"; }
 
 namespace {
+
+double sphere_volume(double r) { return 4.0 / 3.0 * std::numbers::pi * r * r * r; }
 
 void check_elements(const Domain& d, const Origin& origin)
 {
@@ -26,6 +29,17 @@ void check_elements(const Domain& d, const Origin& origin)
         if (!(d.box[axis] > 0.0 && std::isfinite(d.box[axis])))
             throw InvalidInput(
                 fmt::format("box: needs three positive edges, got {} m along {}", d.box[axis], "xyz"[axis]));
+    double mean = 0.0, spheres = 0.0;
+    for (const double r : el.r) mean += r / static_cast<double>(el.r.size()), spheres += sphere_volume(r);
+    // Radii must be right before means of them say anything.
+    const bool sound = !el.r.empty() && std::ranges::all_of(el.r, [](double r) { return r > 0.0 && std::isfinite(r); });
+    if (sound && !(d.mean_radius > 0.5 * mean && d.mean_radius < 2.0 * mean))
+        throw InvalidInput(
+            fmt::format("mean radius: needs about {:.4g} m, as the elements have, got {} m; is the unit right?", mean,
+                        d.mean_radius));
+    if (sound && !(d.dense_volume > 0.999999 * spheres && std::isfinite(d.dense_volume)))
+        throw InvalidInput(fmt::format("dense volume: needs at least the {:.6g} m3 of the elements, got {} m3", spheres,
+                                       d.dense_volume));
     const double beyond = 0.5 * d.mean_radius;
     for (std::size_t e = 0; e < el.r.size(); ++e) {
         const Vec3 c{el.x[e], el.y[e], el.z[e]};

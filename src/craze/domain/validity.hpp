@@ -17,8 +17,9 @@ std::string name_of(Part part);
 using Origin = std::function<std::string(Part, std::size_t index)>;
 
 /// Elements: finite, positive radius, centre in the box (half a mean radius outside is let pass), no centre inside
-/// another element. Bonds and near pairs: i < j, both elements exist, none twice, finite thickness in [0, L_0].
-/// Bonds and near pairs must be sorted by (i, j), as sort_pairs leaves them.
+/// another element; R_DE within half and twice their mean radius, the dense volume at least theirs. Bonds and near
+/// pairs: i < j, both elements exist, none twice, finite thickness in [0, L_0]. Bonds and near pairs must be sorted by
+/// (i, j), as sort_pairs leaves them.
 /// @throws InvalidInput  naming the origin of the first that fails and what was needed
 void check_domain(const Domain& domain, const Origin& origin);
 

@@ -91,6 +91,10 @@ Domain get(const Hdf5File& in, const fs::path& file)
     const std::size_t cells = kind.size();
     const auto ends = array<std::int64_t>(in, file, "/VTKHDF/Connectivity", 2 * cells);
     for (std::size_t b = 0; b < cells; ++b) {
+        for (const std::int64_t e : {ends[2 * b], ends[2 * b + 1]})
+            if (e < 0 || e >= static_cast<std::int64_t>(points))
+                refuse(file, fmt::format("bond {} names element {}; there are 0 to {}", b, e,
+                                         static_cast<std::int64_t>(points) - 1));
         if (kind[b] > 1) refuse(file, fmt::format("bond {} has the unknown kind {}", b, kind[b]));
         d.bonds.i.push_back(static_cast<std::int32_t>(ends[2 * b]));
         d.bonds.j.push_back(static_cast<std::int32_t>(ends[2 * b + 1]));
@@ -135,9 +139,16 @@ void write_vtkhdf(const Discretisation& d, const fs::path& file)
 
 Discretisation read_discretisation_vtkhdf(const fs::path& file)
 {
-    const Hdf5File in = Hdf5File::open(file);
     Discretisation d;
-    d.dense = get(in, file);
+    d.dense = read_vtkhdf(file);
+    if (!read_defects_vtkhdf(file, d)) refuse(file, "has no pores and cracks");
+    return d;
+}
+
+bool read_defects_vtkhdf(const fs::path& file, Discretisation& d)
+{
+    const Hdf5File in = Hdf5File::open(file);
+    if (!in.has("/VTKHDF/PointData/in_pore")) return false;
     const std::size_t bonds = d.dense.bonds.i.size(), near = d.dense.near.i.size();
     d.in_pore = array<std::uint8_t>(in, file, "/VTKHDF/PointData/in_pore", d.dense.elements.r.size());
     d.bonds = {array<std::uint8_t>(in, file, "/VTKHDF/CellData/cut", bonds),
@@ -146,7 +157,18 @@ Discretisation read_discretisation_vtkhdf(const fs::path& file)
     d.near = {array<std::uint8_t>(in, file, "/craze/near/cut", near), array<double>(in, file, "/craze/near/T1", near),
               array<double>(in, file, "/craze/near/T2", near)};
     d.p_vx = array<double>(in, file, "/craze/p_vx", 1)[0];
-    return d;
+    const auto check = [&](const PairCracks& cracks, const auto& pairs, const char* what) {
+        for (std::size_t p = 0; p < cracks.cut.size(); ++p) {
+            const double L_0 = norm(d.dense.elements.centre(pairs.j[p]) - d.dense.elements.centre(pairs.i[p]));
+            for (const double T : {cracks.T1[p], cracks.T2[p]})
+                if (!(T >= 0.0 && T <= L_0))
+                    refuse(file, fmt::format("{} {} needs a crack thickness from 0 to L_0 = {:.4g} m, got {} m", what,
+                                             p, L_0, T));
+        }
+    };
+    check(d.bonds, d.dense.bonds, "bond");
+    check(d.near, d.dense.near, "near pair");
+    return true;
 }
 
 }  // namespace craze::domain

@@ -17,6 +17,10 @@ Domain read_vtkhdf(const std::filesystem::path& file);
 
 /// The same with `in_pore` for points and `cut`, `T1`, `T2` for cells.
 void write_vtkhdf(const Discretisation& discretisation, const std::filesystem::path& file);
+/// @throws InvalidInput  as read_vtkhdf, and when the file holds a domain alone or a thickness is not in [0, L_0]
 Discretisation read_discretisation_vtkhdf(const std::filesystem::path& file);
+/// Only what the second adds, put into `d`, whose `dense` is the file's; false, and nothing done, where it is not
+/// there.
+bool read_defects_vtkhdf(const std::filesystem::path& file, Discretisation& d);
 
 }  // namespace craze::domain

@@ -14,11 +14,25 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <numbers>
 
 namespace craze::loading {
 namespace {
 
 RigOptions rig_options(const Settings& s) { return {s.face_reach, s.interior_margin, s.residual}; }
+
+/// A packing that came without its pores' elements would be calibrated to be as stiff as the dense ceramic.
+void tell_of_carved(const domain::Domain& dense)
+{
+    double spheres = 0.0;
+    for (const double r : dense.elements.r) spheres += 4.0 / 3.0 * std::numbers::pi * r * r * r;
+    if (const double lost = 1.0 - spheres / dense.dense_volume; lost > 0.001)
+        notice(fmt::format(
+            "calibration: {:.1f} % of the packing's volume was carved out before it came here, so its beams are made "
+            "too "
+            "stiff; import the domain.vtkhdf of its run, or give the beams (loading.beam.calibrate = false)",
+            100.0 * lost));
+}
 
 Calibration find_beams(const domain::Domain& dense, const Settings& s)
 {
@@ -28,6 +42,7 @@ Calibration find_beams(const domain::Domain& dense, const Settings& s)
     if (s.beam.given.r_tilde != mechanics::BeamMaterial{}.r_tilde) options.first_guess = s.beam.given.r_tilde;
     options.tolerance = s.beam.tolerance;
     options.rig = rig_options(s);
+    if (s.beam.calibrate) tell_of_carved(dense);
     if (!s.beam.calibrate) return measure_given(dense, target, s.beam.given, options);
     const std::string recipe = calibration_recipe(dense, target, options.nu_B, options.rig);
     if (auto kept = find_calibration(recipe, s.beam.tolerance, s.beam.library)) return *kept;

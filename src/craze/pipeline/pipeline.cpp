@@ -129,7 +129,7 @@ Json do_domain(Workspace& w, const fs::path& folder)
         study_voxel_sizes(w, folder);
     }
     w.micro_.reset();
-    domain::save(*w.discretisation_, w.s.domain, folder);
+    domain::save(*w.discretisation_, w.s.domain, folder, loading::dense_material(w.s.loading).rho_D);
     return domain::summary(*w.discretisation_);
 }
 
@@ -162,6 +162,12 @@ std::string imported(const domain::Settings& s)
     return hash.digest();
 }
 
+// The ceramic's density stands in files that are written for others.
+std::string written_density(const Settings& s)
+{
+    return s.domain.write.empty() ? "" : fmt::format("{}", loading::dense_material(s.loading).rho_D);
+}
+
 std::vector<Step> steps(const Settings& s, const RunOptions& options)
 {
     const auto w = std::make_shared<Workspace>();
@@ -180,7 +186,7 @@ std::vector<Step> steps(const Settings& s, const RunOptions& options)
         all.push_back({"microstructure", content(s.microstructure), {"images"}, with(do_microstructure)});
         all.push_back({"mesh", content(s.mesh), {"microstructure"}, with(do_mesh)});
     }
-    all.push_back({"domain", content(s.domain) + imported(s.domain), {}, with(do_domain)});
+    all.push_back({"domain", content(s.domain) + imported(s.domain) + written_density(s), {}, with(do_domain)});
     if (!s.without_images()) all.back().after = {"microstructure", "mesh"};
     all.push_back({"loading", content(s.loading), {"domain"}, with(do_loading)});
     all.push_back({"report", content(s.report), {"loading"}, with(do_report), true});

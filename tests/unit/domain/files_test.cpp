@@ -137,6 +137,74 @@ TEST_F(DomainFiles, AreRefusedWithTheirLine)
     EXPECT_THROW(write_domain(cracked(), "lamps", folder), InvalidInput);
 }
 
+TEST_F(DomainFiles, WhoseRadiusOrVolumeIsNotThatOfTheElementsAreRefused)
+{
+    const std::string rows = "x,y,z,r\n1,1,1,1\n3,1,1,1\n", bonds = "i,j\n0,1\n";
+    const auto refused = [&](const std::string& remark, const std::string& what) {
+        const std::string message = refusal("# " + remark + "\n" + rows, bonds);
+        EXPECT_NE(message.find(what), std::string::npos) << remark << ": " << message;
+    };
+    for (const char* radius : {"0", "-1", "nan", "0.4", "2.1"})
+        refused(std::string("mean_radius_m = ") + radius, "mean radius");
+    for (const char* volume : {"0", "-1", "nan", "inf", "8.37"})  // two spheres have 8.378
+        refused(std::string("dense_volume_m3 = ") + volume, "dense volume");
+    EXPECT_EQ(refusal("# mean_radius_m = 1.1; dense_volume_m3 = 8.4\n" + rows, bonds), "");
+}
+
+TEST_F(DomainFiles, OfLammpsAreRefusedWithTheirLine)
+{
+    const std::string head = "of someone\n\n3 atoms\n2 bonds\n2 bond types\n0 6 xlo xhi\n0 2 ylo yhi\n0 2 zlo zhi\n";
+    const std::string atoms = "\nAtoms # bpm/sphere\n\n3 1 1 2 1 5 1 1\n1 1 1 2 1 1 1 1\n2 1 1 2 1 3 1 1\n";
+    const auto read = [&](const std::string& text) {
+        Source source;
+        source.elements = write("l.data", text);
+        return read_domain(source);
+    };
+    const Domain d = read(head + atoms + "\nBonds\n\n1 1 3 2\n2 2 1 2 # T = 0.5\n");
+    EXPECT_EQ(d.elements.x, (std::vector<double>{1, 3, 5}));
+    EXPECT_EQ(d.bonds.i, (std::vector<std::int32_t>{0, 1}));
+    EXPECT_EQ(d.bonds.thickness, (std::vector<double>{0.5, 0}));
+    EXPECT_EQ(d.bonds.kind, (std::vector{BondKind::contact_beam, BondKind::beam}));
+    const auto refused = [&](const std::string& text, const std::string& where, const std::string& what) {
+        try {
+            read(text);
+            FAIL() << "read: " << what;
+        } catch (const InvalidInput& error) {
+            EXPECT_NE(std::string(error.what()).find(where), std::string::npos) << error.what();
+            EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
+        }
+    };
+    refused(head + atoms + "\nBonds\n\n1 1 3 2\n2 1 1 4\n", "line 19", "names atom 4; there are 1 to 3");
+    refused(head + atoms + "\nBonds\n\n1 1 0 2\n2 1 1 2\n", "line 18", "names atom 0");
+    refused(head + atoms + "\nBonds\n\n1 1 3 3\n2 1 1 2\n", "line 18", "joins atom 3 to itself");
+    refused(head + atoms + "\nBonds\n\n1 3 3 2\n2 1 1 2\n", "line 18", "bond type 1");
+    refused(head + atoms + "\nBonds\n\n1 1 3 2\n", "l.data", "after 1 of 2 bonds");
+    refused(head + atoms, "l.data", "after 0 of 2 bonds");
+    refused(head + "\nAtoms # bpm/sphere\n\n3 1 1 2 1 5 1 1\n", "l.data", "after 1 of 3 atoms");
+    refused(head + "1 0 0 xy xz yz\n" + atoms, "line 9", "right angles");
+}
+
+TEST_F(DomainFiles, OfOneFileTakeNoSecondFileAndVtkhdfIsInMetres)
+{
+    const Domain d = cracked();
+    write_domain(d, "vtkhdf", folder);
+    write_domain(d, "csv", folder);
+    Source source;
+    source.elements = folder / "domain.vtkhdf";
+    const auto refused = [&](auto change) {
+        Source changed = source;
+        change(changed);
+        EXPECT_THROW(read_domain(changed), InvalidInput);
+    };
+    refused([&](Source& s) { s.bonds = folder / "bonds.csv"; });
+    refused([&](Source& s) { s.near = folder / "near.csv"; });
+    refused([](Source& s) { s.unit = 1e-6; });
+    refused([&](Source& s) { s.box = 0.5 * d.box; });
+    refused([&](Source& s) { s.mean_radius = 3 * d.mean_radius; });
+    source.box = 2.0 * d.box;
+    EXPECT_EQ(read_domain(source).box, 2.0 * d.box);
+}
+
 TEST_F(DomainFiles, OfOthersMayHaveAnyUnitOrderAndColumns)
 {
     Source source;

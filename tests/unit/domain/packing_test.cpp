@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace craze::domain {
 namespace {
@@ -170,7 +171,21 @@ TEST(Quality, OfATouchingRowIsKnown)
     EXPECT_DOUBLE_EQ(q.cardinality, 1.0);
     EXPECT_NEAR(q.overlap[4], 0.05, 1e-12);
     EXPECT_DOUBLE_EQ(q.fabric[0], 1.0);
+    EXPECT_DOUBLE_EQ(q.fabric[1] + q.fabric[2] + q.fabric[3] + q.fabric[4] + q.fabric[5], 0.0);
     EXPECT_NEAR(q.volume_fraction, 3.14159265358979 / 6.0, 1e-12);
+    EXPECT_EQ(q.touching, 1);
+    EXPECT_DOUBLE_EQ(q.contact_number, 0.5);
+    // L_0 is each bond's own: 1.9 and 2.1 radii, around the 2 R_DE of [Eq. 4].
+    EXPECT_NEAR(q.bond_length[0], 0.95, 1e-12);
+    EXPECT_NEAR(q.bond_length[4], 1.05, 1e-12);
+    for (std::size_t bin = 0; bin < 60; ++bin) {
+        const double middle = 0.705 + 0.01 * static_cast<double>(bin);
+        const bool edge = std::abs(middle - 0.95) < 0.006 || std::abs(middle - 1.05) < 0.006;
+        if (!edge) {
+            EXPECT_EQ(q.bond_length_counts[bin], 0) << middle;
+        }
+    }
+    EXPECT_EQ(std::accumulate(q.bond_length_counts.begin(), q.bond_length_counts.end(), std::int64_t{0}), 2);
 }
 
 }  // namespace

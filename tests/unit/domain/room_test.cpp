@@ -5,12 +5,15 @@
 #include "craze/core/parallel.hpp"
 #include "craze/core/progress.hpp"
 #include "craze/domain/vtkhdf.hpp"
+#include "craze/io/atomic_file.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <sstream>
+#include <string>
 
 namespace craze::domain {
 namespace {
@@ -105,6 +108,49 @@ TEST_F(Discretising, TakesTheElementsInPoresAndCutsTheBondsAtTheCrack)
     }
     EXPECT_GT(cut, 50);
     EXPECT_GT(measured, 5);
+    std::int64_t near_cut = 0;
+    for (std::size_t p = 0; p < d.dense.near.i.size(); ++p) {
+        const double z_i = el.z[static_cast<std::size_t>(d.dense.near.i[p])],
+                     z_j = el.z[static_cast<std::size_t>(d.dense.near.j[p])];
+        const bool crosses = (z_i < 40 * Sample::h) != (z_j < 40 * Sample::h);
+        ASSERT_EQ(d.near.cut[p] != 0, crosses);
+        near_cut += crosses;
+        EXPECT_EQ(d.near.T2[p] > 0.0, crosses);
+    }
+    EXPECT_GT(near_cut, 10);
+}
+
+TEST_F(Discretising, MeasuresCracksInACylinderOfRTildeMeanRadii)  // [Eq. 3]
+{
+    // One bond of 20 px through a sheet; void one px thick lies in a ring of 3 to 5 px around its line.
+    Domain pair;
+    constexpr double h = Sample::h;
+    pair.box = Vec3{64, 64, 64} * h;
+    pair.mean_radius = 10 * h;
+    pair.elements = {{32.5 * h, 32.5 * h}, {30.5 * h, 30.5 * h}, {30 * h, 50 * h}, {10 * h, 10 * h}};
+    pair.bonds = {{0}, {1}, {BondKind::beam}, {0.0}};
+    sample.micro.pore = Mask(Shape{64, 64, 64});
+    sample.micro.crack = Mask(Shape{64, 64, 64});
+    std::int64_t ring = 0, disc = 0;
+    for (std::int64_t x = 20; x < 45; ++x)
+        for (std::int64_t y = 20; y < 45; ++y) {
+            const auto r2 = (x - 32) * (x - 32) + (y - 30) * (y - 30);
+            disc += r2 <= 25;
+            if (r2 < 9 || r2 > 25) continue;
+            ++ring;
+            sample.micro.crack.set(x, y, 40, true);
+            sample.micro.gray.level(x, y, 40) = 0;
+        }
+    const auto T = [&](double r_tilde) {
+        Settings s;
+        s.r_tilde = r_tilde;
+        const Discretisation d = discretise(pair, sample.micro, sample.surface, s);
+        EXPECT_EQ(d.bonds.cut[0], 1);
+        EXPECT_EQ(d.bonds.T1[0], d.bonds.T2[0]);
+        return d.bonds.T1[0] / h;
+    };
+    EXPECT_EQ(T(0.28), 0.0);
+    EXPECT_NEAR(T(0.5), static_cast<double>(ring) / static_cast<double>(disc), 1e-9);
 }
 
 TEST_F(Discretising, TakesThePoresShareOfTheMass)
@@ -157,8 +203,36 @@ TEST_F(Discretising, IsReadBackAsItWasSaved)
     EXPECT_EQ(back.bonds.kind, cracked.bonds.kind);
     EXPECT_EQ(back.bonds.thickness, cracked.bonds.thickness);
     EXPECT_EQ(back.near.thickness, cracked.near.thickness);
+    // Taken through loading without its images it keeps its pores and cracks.
+    Settings alone;
+    alone.import_from.elements = (folder / "domain.vtkhdf").string();
+    alone.import_from.alone = true;
+    expect_same(import_domain(alone), d);
+    alone.import_from.elements = (folder / "cracked.vtkhdf").string();
+    EXPECT_EQ(with_defects(import_domain(alone), {}).bonds.thickness, cracked.bonds.thickness);
+    Discretisation thick = d;
+    thick.bonds.T2[0] = 1.0;
+    write_vtkhdf(thick, folder / "domain.vtkhdf");
+    EXPECT_THROW(load_discretisation(folder), InvalidInput);
     fs::remove_all(folder);
     EXPECT_THROW(load_discretisation(folder), InvalidInput);
+}
+
+TEST_F(Discretising, WritesTheWeightOfTheCeramicForOthers)
+{
+    const fs::path folder = fs::path(::testing::TempDir()) / "craze_domain_room_weight";
+    Discretisation d = discretise(sample.micro, sample.surface, Sample::R_C, {});
+    Settings s;
+    s.write = {"lammps"};
+    save(d, s, folder, 3950.0);
+    const std::string text = io::read_text(folder / "specimen/lammps/domain.data");
+    std::istringstream atoms(text.substr(text.find("bpm/sphere") + 10));
+    double id = 0, type = 0, molecule = 0, diameter = 0, density = 0, x = 0, y = 0, z = 0, mass = 0.0;
+    while (atoms >> id >> molecule >> type >> diameter >> density >> x >> y >> z)
+        mass += density * 3.14159265358979 / 6.0 * diameter * diameter * diameter;
+    const double box = d.dense.box.x * d.dense.box.y * d.dense.box.z;
+    EXPECT_NEAR(mass / (3950.0 * box * (1.0 - discrete_porosity(d))), 1.0, 1e-9);
+    fs::remove_all(folder);
 }
 
 TEST_F(Discretising, SumsUp)
@@ -168,6 +242,19 @@ TEST_F(Discretising, SumsUp)
     EXPECT_EQ(json["specimen"]["contact_beams"].get<int>() > 0, true);
     EXPECT_NEAR(json["T2_m"]["median"].get<double>() / json["T1_m"]["median"].get<double>(), 0.75, 1e-9);
     EXPECT_NEAR(json["dense"]["interior_cardinality"].get<double>(), 6.2, 0.05);
+}
+
+TEST_F(Discretising, SaysWhenElementsAreSqueezed)
+{
+    take_notices();
+    Settings s;
+    s.density = 0.2;
+    pack(Vec3{2e-6, 2e-6, 2e-6}, 200e-9, s);
+    const auto notices = take_notices();
+    ASSERT_EQ(notices.size(), 1U);
+    EXPECT_NE(notices[0].find("squeezed"), std::string::npos);
+    pack(Vec3{2e-6, 2e-6, 2e-6}, 200e-9, {});
+    EXPECT_TRUE(take_notices().empty());
 }
 
 TEST_F(Discretising, SaysWhenElementsAreSmallerOrLargerThanTheClosingBall)

@@ -50,6 +50,17 @@ TEST(BinaryThickness, OfFigure15DrawnInVoxels)  // 25 px long, 9 px across, 28 o
     EXPECT_DOUBLE_EQ(intensity_thickness(voxels, 25 * h), binary_thickness(voxels, 25 * h));  // I = 0
 }
 
+TEST(IntensityThickness, TakesNothingBackForCrackVoxelsBrighterThanTheThreshold)  // [Eq. 15]: N^{<S}
+{
+    auto m = blank({20, 5, 5}, 1.0, 200, 100);
+    for (const auto& [x, gray] : {std::pair{8, 0}, {9, 100}, {10, 180}})
+        for (std::int64_t y = 0; y < 5; ++y)
+            for (std::int64_t z = 0; z < 5; ++z) darken(m, x, y, z, static_cast<std::uint8_t>(gray));
+    const auto voxels = voxels_in_cylinder({5, 2.5, 2.5}, {15, 2.5, 2.5}, 1.2, m, CountedVoid::crack);
+    EXPECT_DOUBLE_EQ(binary_thickness(voxels, 10.0), 3.0);
+    EXPECT_DOUBLE_EQ(intensity_thickness(voxels, 10.0), 1.0);
+}
+
 TEST(VoxelsInCylinder, EqualBruteForceInEveryDirection)
 {
     constexpr double h = 0.1;
