@@ -1,10 +1,9 @@
 #include "craze/mechanics/coarse_space.hpp"
 
-#include "craze/core/errors.hpp"
 #include "craze/core/parallel.hpp"
+#include "craze/mechanics/block_cholesky.hpp"
 
 #include <Eigen/Dense>
-#include <Eigen/Sparse>
 
 #include <algorithm>
 #include <array>
@@ -14,7 +13,7 @@ namespace craze::mechanics {
 namespace {
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Matrix6 = BlockCholesky::Block;
 
 /// One way a bond deforms: stiffness * (g . dofs)^2 / 2, gradients with respect to displacement and rotation of each
 /// end.
@@ -39,10 +38,7 @@ std::array<Deformation, 6> deformations(const BeamSection& s, const Vec3& t, dou
     return out;
 }
 
-struct BlockEntry {
-    std::int32_t column = 0;
-    Matrix6 block = Matrix6::Zero();
-};
+using BlockEntry = BlockCholesky::Entry;
 
 }  // namespace
 
@@ -52,8 +48,8 @@ struct CoarseSpace::Work {
     std::vector<std::uint8_t> held;                  ///< bit c: number c of the element is imposed
     std::vector<std::vector<BlockEntry>> beam_rows;  ///< block rows of the groups, what beams bring
     double unit = 1.0, scale = 1.0;                  ///< length that makes rotations displacements, m; EA / unit, N/m
-    Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::AMDOrdering<int>> factor;
-    mutable Eigen::VectorXd load;
+    BlockCholesky factor;
+    bool solves = false;  ///< there is something to solve
 
     Vector6 project(std::int32_t e, Vec3 along, Vec3 about) const;
     template <class Visit>
@@ -163,33 +159,23 @@ void CoarseSpace::update(const Stiffness& stiffness)
         });
     }
 
-    std::vector<Eigen::Triplet<double>> entries;
     double trace = 0.0;
-    for (const auto& row : rows) trace += row[0].block.trace();
-    const double shift =
-        groups > 0 ? 1e-7 * trace / (6.0 * groups) : 0.0;  // floating fragments have nothing of their own
-    for (std::int32_t g = 0; g < groups; ++g)
-        for (const BlockEntry& entry : rows[static_cast<std::size_t>(g)])
-            for (int r = 0; r < 6; ++r)
-                for (int c = 0; c < (entry.column == g ? r + 1 : 6); ++c)
-                    entries.emplace_back(6 * g + r, 6 * entry.column + c,
-                                         entry.block(r, c) + (entry.column == g && r == c ? shift : 0.0));
-    Eigen::SparseMatrix<double> matrix(6 * groups, 6 * groups);
-    matrix.setFromTriplets(entries.begin(), entries.end());
-    if (groups > 0 && trace > 0.0) w.factor.compute(matrix);
-    w.load.resize(groups > 0 && trace > 0.0 && w.factor.info() == Eigen::Success ? 6 * groups : 0);
+    for (auto& row : rows) {
+        for (auto& entry : row) entry.block *= 1.0 / w.scale;
+        trace += row[0].block.trace();
+    }
+    // Floating fragments have nothing of their own.
+    const double shift = groups > 0 ? 1e-7 * trace / (6.0 * groups) : 0.0;
+    for (auto& row : rows) row[0].block.diagonal().array() += shift;
+    w.solves = trace > 0.0 && w.factor.factorise(rows);
 }
 
 void CoarseSpace::solve(std::span<float> load) const
 {
-    const Work& w = *work_;
-    if (w.load.size() != std::ssize(load)) {
+    if (work_->solves)
+        work_->factor.solve(load.data());
+    else
         std::fill(load.begin(), load.end(), 0.0F);
-        return;
-    }
-    w.load = Eigen::Map<const Eigen::VectorXf>(load.data(), std::ssize(load)).cast<double>();
-    w.load = w.factor.solve(w.load).eval();
-    Eigen::Map<Eigen::VectorXf>(load.data(), std::ssize(load)) = (w.scale * w.load).cast<float>();
 }
 
 }  // namespace craze::mechanics

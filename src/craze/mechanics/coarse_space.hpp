@@ -26,7 +26,8 @@ public:
                 Aggregates groups);
     /// The same beams and groups, other springs.
     void update(const Stiffness& stiffness);
-    /// Six loads per aggregate, force (EA) and moment about its centre (EA R), become displacement (R) and rotation.
+    /// Loads of the aggregates, force (EA) and moment about its centre (EA R), become displacement (R) and rotation;
+    /// rows of eight, the last two of each not used.
     void solve(std::span<float> load) const;
     std::int32_t aggregates() const;
 

@@ -28,14 +28,14 @@ CRAZE_MULTIVERSION double dot_block(const float* a, const float* b)
     return total(sum);
 }
 
-/// d += s p, r -= s q; gives the new r . r.
-CRAZE_MULTIVERSION double step_block(float s, const float* p, const float* q, float* d, float* r)
+/// r -= s q, and q is empty again; gives the new r . r.
+CRAZE_MULTIVERSION double step_block(float s, float* q, float* r)
 {
     Floats sum{};
     for (std::int64_t k = 0; k < block_length; k += floats) {
-        store(d + k, load(d + k) + s * load(p + k));
         const Floats left = load(r + k) - s * load(q + k);
         store(r + k, left);
+        store(q + k, Floats{});
         sum += left * left;
     }
     return total(sum);
@@ -115,14 +115,14 @@ void InnerSolver::give(std::int64_t block, std::span<const float> rows, double u
                 double{rows[static_cast<std::size_t>(floats * e + c)]} * (c < 3 ? length : angle);
 }
 
-/// r is new and its blocks have descended, r . z so far is rz: the next direction.
-void InnerSolver::prepare(double rz)
+/// r is new after a step along p and its blocks have descended, r . z so far is rz: d follows, and the next direction.
+void InnerSolver::prepare(double rz, float step)
 {
     const double before = rz_;
     rz_ = rz + preconditioner_.solve_coarse();
     const auto beta = static_cast<float>(before > 0.0 ? rz_ / before : 0.0);
     over_blocks(stiffness_, part_, nothing, [&](std::int64_t b) {
-        preconditioner_.ascend(b, z_.data(), beta, p_.data());
+        preconditioner_.ascend(b, z_.data(), step, d_.data(), beta, p_.data());
         return 0.0;
     });
 }
@@ -149,15 +149,17 @@ InnerSolver::Result InnerSolver::solve(std::span<const double> r, double target,
     if (!go_on) {
         rz_ = 0.0;
         prepare(over_blocks(stiffness_, part_, nothing,
-                            [&](std::int64_t b) { return preconditioner_.descend(b, r_.data(), z_.data()); }));
+                            [&](std::int64_t b) { return preconditioner_.descend(b, r_.data(), z_.data()); }),
+                0.0F);
     }
     out.norm = unit * std::sqrt(over_blocks(stiffness_, part_, nothing,
                                             [&](std::int64_t b) { return dot_block(rows(r_, b), rows(r_, b)); }));
     while (out.norm > target && out.iterations < most && rz_ > 0.0) {
         check_interrupt();
         const double pq = over_blocks(
-            stiffness_, part_, [&](std::int64_t part) { stiffness_.apply(part, p_.data(), q_.data()); },
+            stiffness_, part_, [&](std::int64_t part) { stiffness_.add_border(part, p_.data(), q_.data()); },
             [&](std::int64_t b) {
+                stiffness_.add_block(b, p_.data(), q_.data());
                 for (auto k = imposed_first_[static_cast<std::size_t>(b)];
                      k < imposed_first_[static_cast<std::size_t>(b) + 1]; ++k) {
                     const std::int64_t dof = imposed_[static_cast<std::size_t>(k)];
@@ -165,21 +167,24 @@ InnerSolver::Result InnerSolver::solve(std::span<const double> r, double target,
                 }
                 return dot_block(rows(p_, b), rows(q_, b));
             });
-        if (!(pq > 0.0)) break;  // no stiffness along p: nothing more to gain
+        if (!(pq > 0.0)) {  // no stiffness along p: nothing more to gain
+            std::fill(q_.begin(), q_.end(), 0.0F);
+            break;
+        }
         double rp = rz_;
         if (go_on && out.iterations == 0)
             rp = over_blocks(stiffness_, norm_, nothing,
                              [&](std::int64_t b) { return dot_block(rows(r_, b), rows(p_, b)); });
         const auto s = static_cast<float>(rp / pq);
         const double rz = over_blocks(stiffness_, part_, nothing, [&](std::int64_t b) {
-            norm_[static_cast<std::size_t>(b)] = step_block(s, rows(p_, b), rows(q_, b), rows(d_, b), rows(r_, b));
+            norm_[static_cast<std::size_t>(b)] = step_block(s, rows(q_, b), rows(r_, b));
             return preconditioner_.descend(b, r_.data(), z_.data());
         });
         double square = 0.0;
         for (const double n : norm_) square += n;
         out.norm = unit * std::sqrt(square);
         ++out.iterations;
-        prepare(rz);
+        prepare(rz, s);
     }
     over_blocks(stiffness_, part_, nothing, [&](std::int64_t b) {
         give(b, d_, unit, d);
@@ -198,7 +203,7 @@ void InnerSolver::precondition(std::span<const double> r, std::span<double> z)
     });
     preconditioner_.solve_coarse();
     over_blocks(stiffness_, part_, nothing, [&](std::int64_t b) {
-        preconditioner_.ascend(b, z_.data(), 0.0F, p_.data());
+        preconditioner_.ascend(b, z_.data(), 0.0F, d_.data(), 0.0F, p_.data());
         give(b, p_, unit, z);
         return 0.0;
     });

@@ -45,7 +45,7 @@ private:
     void take(std::int64_t block, std::span<const double> r, double unit);
     void give(std::int64_t block, std::span<const float> rows, double unit, std::span<double> d) const;
     void precondition(std::span<const double> r, std::span<double> z);
-    void prepare(double rz);
+    void prepare(double rz, float step);
 
     const Lattice& lattice_;
     double EA_;
@@ -53,7 +53,7 @@ private:
     Multilevel preconditioner_;
     std::vector<std::int64_t> imposed_;
     std::vector<std::int64_t> imposed_first_;  ///< per block
-    std::vector<float> d_, r_, z_, p_, q_;     ///< rows of eight
+    std::vector<float> d_, r_, z_, p_, q_;     ///< rows of eight; q is empty between iterations
     std::vector<double> part_, norm_;          ///< sums of each block
     double rz_ = 0.0, unit_ = 1.0;             ///< r . z of the last direction; force that 1 stands for, N
 };

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -29,9 +30,19 @@ Block safe_inverse(const Block& block)
     return scale.asDiagonal() * inverse * scale.asDiagonal();
 }
 
-void keep_inverse(const Block& block, float* to)
+using Shorts = std::int16_t __attribute__((vector_size(16)));
+using Wholes = std::int32_t __attribute__((vector_size(32)));
+using Quad = float __attribute__((vector_size(16)));
+
+/// Sixteen bits an entry, in units of the largest: half the memory that iterations wait for, and symmetric still.
+void keep_inverse(const Block& block, std::int16_t* to, float& unit)
 {
-    Eigen::Map<Eigen::Matrix<float, 6, 6, Eigen::RowMajor>>{to} = safe_inverse(block).cast<float>();
+    const Block inverse = safe_inverse(block);
+    const double largest = inverse.cwiseAbs().maxCoeff();
+    unit = static_cast<float>(largest / 32767.0);
+    for (int r = 0; r < 6; ++r)
+        for (int c = 0; c < 6; ++c)
+            *to++ = static_cast<std::int16_t>(std::lround(inverse(std::max(r, c), std::min(r, c)) / largest * 32767.0));
 }
 
 /// Newton and metre become EA and R.
@@ -46,37 +57,114 @@ void make_dimensionless(std::span<double> blocks, double EA, double R)
     });
 }
 
-/// D^-1 r of one row: a row of six blocks read as eight, of which the last two say nothing.
-CRAZE_INLINE Floats times(const float* inverse, const float* r)
+/// D^-1 r of one row: a row of six entries read as eight, of which the last two say nothing.
+CRAZE_INLINE Floats times(const std::int16_t* entries, float unit, const float* r)
 {
     Floats sum{};
-    for (int c = 0; c < 6; ++c) sum += load(inverse + 6 * c) * r[c];
-    sum[6] = sum[7] = 0.0F;
-    return sum;
+    for (int c = 0; c < 6; ++c) {
+        Shorts row;
+        std::memcpy(&row, entries + 6 * c, sizeof row);
+        sum += __builtin_convertvector(__builtin_convertvector(row, Wholes), Floats) * r[c];
+    }
+    const Floats six{unit, unit, unit, unit, unit, unit, 0.0F, 0.0F};
+    return six * sum;
 }
 
-/// What a force and a moment at a node are about the centre of its parent.
-CRAZE_INLINE void gather(const float* arm, const float* f, float* load)
+CRAZE_INLINE Quad load_arm(const float* arm)
 {
-    for (int c = 0; c < 6; ++c) load[c] += f[c];
-    load[3] += arm[1] * f[2] - arm[2] * f[1];
-    load[4] += arm[2] * f[0] - arm[0] * f[2];
-    load[5] += arm[0] * f[1] - arm[1] * f[0];
+    Quad a;
+    std::memcpy(&a, arm, sizeof a);
+    return a;
+}
+/// What a force and a moment at a node are about the centre of its parent.
+CRAZE_INLINE Floats about_parent(Quad arm, Floats f)
+{
+    const Quad none{};
+    const Floats one = __builtin_shufflevector(arm, none, 4, 4, 4, 1, 2, 0, 4, 4),
+                 two = __builtin_shufflevector(arm, none, 4, 4, 4, 2, 0, 1, 4, 4);
+    return f + one * __builtin_shufflevector(f, f, 0, 0, 0, 2, 0, 1, 0, 0) -
+           two * __builtin_shufflevector(f, f, 0, 0, 0, 1, 2, 0, 0, 0);
 }
 /// How a node moves with its parent.
-CRAZE_INLINE void follow(const float* arm, const float* y, float* u)
+CRAZE_INLINE Floats with_parent(Quad arm, Floats y)
 {
-    for (int c = 0; c < 6; ++c) u[c] += y[c];
-    u[0] += y[4] * arm[2] - y[5] * arm[1];
-    u[1] += y[5] * arm[0] - y[3] * arm[2];
-    u[2] += y[3] * arm[1] - y[4] * arm[0];
+    const Quad none{};
+    const Floats one = __builtin_shufflevector(arm, none, 2, 0, 1, 4, 4, 4, 4, 4),
+                 two = __builtin_shufflevector(arm, none, 1, 2, 0, 4, 4, 4, 4, 4);
+    return y + one * __builtin_shufflevector(y, y, 4, 5, 3, 0, 0, 0, 0, 0) -
+           two * __builtin_shufflevector(y, y, 5, 3, 4, 0, 0, 0, 0, 0);
 }
 
-CRAZE_INLINE float dot_row(const float* a, Floats b)
+CRAZE_INLINE double total(Floats a)
 {
-    float sum = 0.0F;
-    for (int c = 0; c < 6; ++c) sum += a[c] * b[c];
+    double sum = 0.0;
+    for (int c = 0; c < 6; ++c) sum += double{a[c]};
     return sum;
+}
+
+/// z = D^-1 r of nodes [begin, end); gives r . z.
+CRAZE_MULTIVERSION double answer_rows(const std::int16_t* inverse, const float* unit, const float* r, float* z,
+                                      std::int64_t begin, std::int64_t end)
+{
+    Floats sum{};
+    for (std::int64_t e = begin; e < end; ++e) {
+        const Floats answer = times(inverse + 36 * e, unit[e], r + floats * e);
+        store(z + floats * e, answer);
+        sum += answer * load(r + floats * e);
+    }
+    return total(sum);
+}
+
+/// Loads of parents += those of nodes [begin, end).
+CRAZE_MULTIVERSION void gather_rows(const std::int32_t* parent, const float* arm, const float* r, float* loads,
+                                    std::int64_t begin, std::int64_t end)
+{
+    for (std::int64_t e = begin; e < end; ++e) {
+        if (parent[e] < 0) continue;
+        float* to = loads + floats * parent[e];
+        store(to, load(to) + about_parent(load_arm(arm + 4 * e), load(r + floats * e)));
+    }
+}
+/// Both, without reading r twice.
+CRAZE_MULTIVERSION double descend_rows(const std::int16_t* inverse, const float* unit, const std::int32_t* parent,
+                                       const float* arm, const float* r, float* z, float* loads, std::int64_t begin,
+                                       std::int64_t end)
+{
+    Floats sum{};
+    for (std::int64_t e = begin; e < end; ++e) {
+        const Floats load_here = load(r + floats * e);
+        const Floats answer = times(inverse + 36 * e, unit[e], r + floats * e);
+        store(z + floats * e, answer);
+        sum += answer * load_here;
+        if (parent[e] < 0) continue;
+        float* to = loads + floats * parent[e];
+        store(to, load(to) + about_parent(load_arm(arm + 4 * e), load_here));
+    }
+    return total(sum);
+}
+
+/// Answers of nodes [begin, end) += how their parents move.
+CRAZE_MULTIVERSION void follow_rows(const std::int32_t* parent, const float* arm, const float* answer, float* z,
+                                    std::int64_t begin, std::int64_t end)
+{
+    for (std::int64_t e = begin; e < end; ++e)
+        if (parent[e] >= 0)
+            store(z + floats * e,
+                  load(z + floats * e) + with_parent(load_arm(arm + 4 * e), load(answer + floats * parent[e])));
+}
+
+/// d += step p, p = z + (how the parents move) + beta p.
+CRAZE_MULTIVERSION void ascend_rows(const std::int32_t* parent, const float* arm, const float* answer, const float* z,
+                                    float step, float* d, float beta, float* p, std::int64_t begin, std::int64_t end)
+{
+    for (std::int64_t e = begin; e < end; ++e) {
+        const Floats before = load(p + floats * e);
+        store(d + floats * e, load(d + floats * e) + step * before);
+        Floats next = load(z + floats * e) + beta * before;
+        if (parent != nullptr && parent[e] >= 0)
+            next += with_parent(load_arm(arm + 4 * e), load(answer + floats * parent[e]));
+        store(p + floats * e, next);
+    }
 }
 
 /// Elements at the ends of springs that are in one list and not in the other; both are sorted by (i, j).
@@ -103,43 +191,6 @@ std::vector<std::uint8_t> touched_by_change(const Springs& before, const Springs
     return touched;
 }
 
-CRAZE_MULTIVERSION double descend_rows(const float* inverse, const float* r, float* z, std::int64_t begin,
-                                       std::int64_t end)
-{
-    Floats sum{};
-    for (std::int64_t e = begin; e < end; ++e) {
-        const Floats answer = times(inverse + 36 * e, r + floats * e);
-        store(z + floats * e, answer);
-        sum += answer * load(r + floats * e);
-    }
-    double total = 0.0;
-    for (int c = 0; c < 6; ++c) total += double{sum[c]};
-    return total;
-}
-
-CRAZE_MULTIVERSION void gather_rows(const std::int32_t* parent, const float* arm, const float* r, float* load,
-                                    std::int64_t begin, std::int64_t end)
-{
-    for (std::int64_t e = begin; e < end; ++e)
-        if (parent[e] >= 0) gather(arm + 4 * e, r + floats * e, load + floats * parent[e]);
-}
-
-CRAZE_MULTIVERSION void ascend_rows(const std::int32_t* parent, const float* arm, const float* answer, const float* z,
-                                    float beta, float* p, std::int64_t begin, std::int64_t end)
-{
-    for (std::int64_t e = begin; e < end; ++e) {
-        Floats u = load(z + floats * e) + beta * load(p + floats * e);
-        if (parent[e] >= 0) {
-            const float *a = arm + 4 * e, *y = answer + floats * parent[e];
-            u += load(y);
-            u[0] += y[4] * a[2] - y[5] * a[1];
-            u[1] += y[5] * a[0] - y[3] * a[2];
-            u[2] += y[3] * a[1] - y[4] * a[0];
-        }
-        store(p + floats * e, u);
-    }
-}
-
 }  // namespace
 
 void Multilevel::set_up(const Lattice& lattice, const Stiffness& stiffness, std::span<const std::int64_t> imposed)
@@ -159,12 +210,11 @@ void Multilevel::set_up(const Lattice& lattice, const Stiffness& stiffness, std:
     beams_.assign(static_cast<std::size_t>(36 * elements_), 0.0);
     stiffness.beam_diagonal(beams_);
     make_dimensionless(beams_, stiffness.section().EA, lattice.mean_radius);
-    inverse_.assign(beams_.size() + floats, 0.0F);
+    own_.resize(elements_);
     for (std::size_t l = 0; l + 1 < levels_.size(); ++l) add_up_beams(levels_[l], lattice, stiffness);
     springs_ = {};
     make_inverses(lattice, stiffness, std::vector<std::uint8_t>(static_cast<std::size_t>(elements_), 1));
     if (levels_.empty()) return;
-    top_.resize(static_cast<std::size_t>(6 * levels_.back().count));
     coarse_.set_up(lattice, stiffness, imposed_, levels_.back().groups);
 }
 
@@ -240,7 +290,7 @@ void Multilevel::make_inverses(const Lattice& lattice, const Stiffness& stiffnes
                                const std::vector<std::uint8_t>& touched)
 {
     springs_ = stiffness.springs();
-    invert(lattice, stiffness, touched, nullptr, beams_, inverse_);
+    invert(lattice, stiffness, touched, nullptr, beams_, own_);
     for (std::size_t l = 0; l + 1 < levels_.size(); ++l)
         invert(lattice, stiffness, touched, &levels_[l].groups, levels_[l].beams, levels_[l].inverse);
 }
@@ -253,7 +303,7 @@ void Multilevel::add_up_beams(Level& level, const Lattice& lattice, const Stiffn
     stiffness.beam_diagonal(crossing, groups.of);
     make_dimensionless(crossing, stiffness.section().EA, lattice.mean_radius);
     level.beams.assign(static_cast<std::size_t>(36 * level.count), 0.0);
-    level.inverse.assign(static_cast<std::size_t>(36 * level.count + floats), 0.0F);
+    level.inverse.resize(level.count);
     parallel_ranges(level.count, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t g = begin; g < end; ++g) {
             Eigen::Map<Block> sum(level.beams.data() + 36 * g);
@@ -280,9 +330,15 @@ void Multilevel::add_up_beams(Level& level, const Lattice& lattice, const Stiffn
     });
 }
 
+void Multilevel::Inverses::resize(std::int64_t nodes)
+{
+    entries.assign(static_cast<std::size_t>(36 * nodes + floats), 0);
+    unit.assign(static_cast<std::size_t>(nodes), 0.0F);
+}
+
 /// Inverses of the nodes of one level that hold a touched element; without groups, of the elements themselves.
 void Multilevel::invert(const Lattice& lattice, const Stiffness& stiffness, const std::vector<std::uint8_t>& touched,
-                        const Aggregates* groups, std::span<const double> beams, std::vector<float>& inverse) const
+                        const Aggregates* groups, std::span<const double> beams, Inverses& inverses) const
 {
     const auto node_of = [&](std::int32_t e) { return groups ? groups->of[static_cast<std::size_t>(e)] : e; };
     std::vector<std::int32_t> place(beams.size() / 36, -1), nodes;
@@ -321,7 +377,7 @@ void Multilevel::invert(const Lattice& lattice, const Stiffness& stiffness, cons
                 block.row(c).setZero();
                 block.col(c).setZero();
             }
-            keep_inverse(block, inverse.data() + 36 * node);
+            keep_inverse(block, inverses.entries.data() + 36 * node, inverses.unit[node]);
         }
     });
 }
@@ -329,62 +385,54 @@ void Multilevel::invert(const Lattice& lattice, const Stiffness& stiffness, cons
 double Multilevel::descend(std::int64_t block, const float* r, float* z)
 {
     const std::int64_t begin = block * block_rows, end = std::min(begin + block_rows, elements_);
-    double sum = descend_rows(inverse_.data(), r, z, begin, end);
-    if (levels_.empty()) return sum;
+    if (levels_.empty()) return answer_rows(own_.entries.data(), own_.unit.data(), r, z, begin, end);
     Level& level = levels_.front();
     const std::int64_t g_begin = first_group_[static_cast<std::size_t>(block)],
                        g_end = first_group_[static_cast<std::size_t>(block) + 1];
     std::fill(level.load.begin() + floats * g_begin, level.load.begin() + floats * g_end, 0.0F);
-    gather_rows(level.parent.data(), level.arm.data(), r, level.load.data(), begin, end);
-    if (!level.inverse.empty())
-        sum += descend_rows(level.inverse.data(), level.load.data(), level.answer.data(), g_begin, g_end);
+    double sum = descend_rows(own_.entries.data(), own_.unit.data(), level.parent.data(), level.arm.data(), r, z,
+                              level.load.data(), begin, end);
+    if (levels_.size() > 1)
+        sum += answer_rows(level.inverse.entries.data(), level.inverse.unit.data(), level.load.data(),
+                           level.answer.data(), g_begin, g_end);
     return sum;
 }
 
 double Multilevel::solve_coarse()
 {
     double sum = 0.0;
+    if (levels_.empty()) return sum;
     for (std::size_t l = 1; l < levels_.size(); ++l) {
         Level& level = levels_[l];
         std::fill(level.load.begin(), level.load.end(), 0.0F);
         gather_rows(level.parent.data(), level.arm.data(), levels_[l - 1].load.data(), level.load.data(), 0,
                     levels_[l - 1].count);
-        if (!level.inverse.empty())
-            sum += descend_rows(level.inverse.data(), level.load.data(), level.answer.data(), 0, level.count);
+        if (l + 1 < levels_.size())
+            sum += answer_rows(level.inverse.entries.data(), level.inverse.unit.data(), level.load.data(),
+                               level.answer.data(), 0, level.count);
     }
-    if (levels_.empty()) return sum;
     Level& top = levels_.back();
-    for (std::int64_t g = 0; g < top.count; ++g)
-        for (std::int64_t c = 0; c < 6; ++c)
-            top_[static_cast<std::size_t>(6 * g + c)] = top.load[static_cast<std::size_t>(floats * g + c)];
-    coarse_.solve(top_);
+    std::copy(top.load.begin(), top.load.end(), top.answer.begin());
+    coarse_.solve(top.answer);
     for (std::int64_t g = 0; g < top.count; ++g)
         for (std::int64_t c = 0; c < 6; ++c) {
-            const auto from = static_cast<std::size_t>(6 * g + c), to = static_cast<std::size_t>(floats * g + c);
-            top.answer[to] = top_[from];
-            sum += double{top_[from]} * double{top.load[to]};
+            const auto k = static_cast<std::size_t>(floats * g + c);
+            sum += double{top.load[k]} * double{top.answer[k]};
         }
-    for (std::size_t l = levels_.size() - 1; l > 0; --l) {
-        const Level& level = levels_[l];
-        Level& below = levels_[l - 1];
-        for (std::int64_t k = 0; k < below.count; ++k) {
-            const std::int32_t parent = level.parent[static_cast<std::size_t>(k)];
-            if (parent >= 0)
-                follow(level.arm.data() + 4 * k, level.answer.data() + floats * std::int64_t{parent},
-                       below.answer.data() + floats * k);
-        }
-    }
+    for (std::size_t l = levels_.size() - 1; l > 0; --l)
+        follow_rows(levels_[l].parent.data(), levels_[l].arm.data(), levels_[l].answer.data(),
+                    levels_[l - 1].answer.data(), 0, levels_[l - 1].count);
     return sum;
 }
 
-void Multilevel::ascend(std::int64_t block, const float* z, float beta, float* p) const
+void Multilevel::ascend(std::int64_t block, const float* z, float step, float* d, float beta, float* p) const
 {
     const std::int64_t begin = block * block_rows, end = std::min(begin + block_rows, elements_);
     if (levels_.empty()) {
-        for (std::int64_t k = floats * begin; k < floats * end; ++k) p[k] = z[k] + beta * p[k];
+        ascend_rows(nullptr, nullptr, nullptr, z, step, d, beta, p, begin, end);
     } else {
         const Level& level = levels_.front();
-        ascend_rows(level.parent.data(), level.arm.data(), level.answer.data(), z, beta, p, begin, end);
+        ascend_rows(level.parent.data(), level.arm.data(), level.answer.data(), z, step, d, beta, p, begin, end);
     }
     for (auto k = imposed_first_[static_cast<std::size_t>(block)];
          k < imposed_first_[static_cast<std::size_t>(block) + 1]; ++k) {

@@ -29,15 +29,21 @@ public:
     double descend(std::int64_t block, const float* r, float* z);
     /// All coarser levels, once every block has descended. Gives r . (what they answer).
     double solve_coarse();
-    /// p = z + (answers of all groups) + beta p, zero at imposed degrees of freedom, in one block.
-    void ascend(std::int64_t block, const float* z, float beta, float* p) const;
+    /// d += step p, then p = z + (answers of all groups) + beta p, zero at imposed degrees of freedom, in one block.
+    void ascend(std::int64_t block, const float* z, float step, float* d, float beta, float* p) const;
 
 private:
+    /// D^-1 of every node.
+    struct Inverses {
+        std::vector<std::int16_t> entries;  ///< shape (nodes, 6, 6)
+        std::vector<float> unit;            ///< what 1 stands for, per node
+        void resize(std::int64_t nodes);
+    };
     struct Level {
         std::vector<std::int32_t> parent;         ///< of each node of the level below, -1 for none
         std::vector<float> arm;                   ///< from the parent's centre to the node, R, shape (nodes below, 4)
         std::vector<double> beams;                ///< what beams bring to D, shape (nodes, 6, 6); of the top level none
-        std::vector<float> inverse;               ///< shape (nodes, 6, 6); of the top level none
+        Inverses inverse;                         ///< of the top level none
         mutable std::vector<float> load, answer;  ///< shape (nodes, 8)
         Aggregates groups;                        ///< of elements
         std::int64_t count = 0;
@@ -47,18 +53,17 @@ private:
     void make_inverses(const Lattice& lattice, const Stiffness& stiffness, const std::vector<std::uint8_t>& touched);
     void add_up_beams(Level& level, const Lattice& lattice, const Stiffness& stiffness);
     void invert(const Lattice& lattice, const Stiffness& stiffness, const std::vector<std::uint8_t>& touched,
-                const Aggregates* groups, std::span<const double> beams, std::vector<float>& inverse) const;
+                const Aggregates* groups, std::span<const double> beams, Inverses& inverses) const;
 
     std::int64_t elements_ = 0;
-    std::vector<double> beams_;   ///< of elements: what beams bring to D, shape (n, 6, 6)
-    std::vector<float> inverse_;  ///< of elements, shape (n, 6, 6)
-    Springs springs_;             ///< those that the inverses know
+    std::vector<double> beams_;  ///< of elements: what beams bring to D, shape (n, 6, 6)
+    Inverses own_;               ///< of elements
+    Springs springs_;            ///< those that the inverses know
     std::vector<Level> levels_;
     std::vector<std::int32_t> first_group_;  ///< of the first level, per block
     std::vector<std::uint8_t> held_;         ///< bit c: number c of the element is imposed
     std::vector<std::int64_t> imposed_;
     std::vector<std::int64_t> imposed_first_;  ///< per block
-    std::vector<float> top_;                   ///< six per group
     CoarseSpace coarse_;
 };
 

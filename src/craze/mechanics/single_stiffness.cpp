@@ -69,16 +69,21 @@ CRAZE_MULTIVERSION void add_springs(const SingleBonds& springs, std::int64_t beg
         const std::int32_t i = springs.i[b], j = springs.j[b];
         const float *u = p + floats * i, *v = p + floats * j, t[3] = {springs.tx[b], springs.ty[b], springs.tz[b]};
         const float N = springs.k[b] * (t[0] * (v[0] - u[0]) + t[1] * (v[1] - u[1]) + t[2] * (v[2] - u[2]));
-        if (i >= low)
+        if (i >= low && i < limit)
             for (int c = 0; c < 3; ++c) q[floats * i + c] -= N * t[c];
-        if (j < limit)
+        if (j >= low && j < limit)
             for (int c = 0; c < 3; ++c) q[floats * j + c] += N * t[c];
     }
 }
 
-std::int64_t first_from(const std::vector<std::int32_t>& i, std::int64_t count, std::int64_t element)
+/// The first bond of each block, and the end.
+std::vector<std::int64_t> first_of_blocks(const SingleBonds& bonds, std::int64_t blocks)
 {
-    return std::lower_bound(i.begin(), i.begin() + count, element) - i.begin();
+    std::vector<std::int64_t> first(static_cast<std::size_t>(blocks) + 1, 0);
+    for (std::size_t b = 0; b < static_cast<std::size_t>(bonds.count); ++b)
+        ++first[static_cast<std::size_t>(bonds.i[b] / block_rows) + 1];
+    for (std::size_t k = 1; k < first.size(); ++k) first[k] += first[k - 1];
+    return first;
 }
 
 /// Bonds before `from` that end in rows [low, limit).
@@ -108,6 +113,8 @@ void SingleStiffness::set_beams(const Stiffness& stiffness, double mean_radius)
     }
     const auto team = std::clamp<std::int64_t>(beams_.count / 1024, 1, std::min<std::int64_t>(threads(), blocks()));
     shares_.assign(static_cast<std::size_t>(team), {});
+    share_of_.assign(static_cast<std::size_t>(blocks()), 0);
+    first_beam_ = first_of_blocks(beams_, blocks());
     std::int64_t begin = 0;
     for (std::int64_t part = 0; part < team; ++part) {
         Share& share = shares_[static_cast<std::size_t>(part)];
@@ -116,44 +123,51 @@ void SingleStiffness::set_beams(const Stiffness& stiffness, double mean_radius)
             end = beams_.i[static_cast<std::size_t>(beams_.count * (part + 1) / team)] / block_rows;
         share.begin = begin, share.end = begin = std::max(begin, end);
         const std::int64_t low = share.begin * block_rows, limit = share.end * block_rows;
-        share.beam_begin = first_from(beams_.i, beams_.count, low);
-        share.beam_end = first_from(beams_.i, beams_.count, limit);
-        share.border_beams.pick(beams_, ending_in(beams_.j, share.beam_begin, low, limit));
+        share.border_beams.pick(beams_,
+                                ending_in(beams_.j, first_beam_[static_cast<std::size_t>(share.begin)], low, limit));
+        std::fill(share_of_.begin() + share.begin, share_of_.begin() + share.end, static_cast<std::int32_t>(part));
     }
-    springs_.resize(0);
-    share_springs();
+    set_springs({});
 }
 
+/// Once for each block that an end lies in: a row gets all its beams first, whoever computes them, then its springs.
 void SingleStiffness::set_springs(const Springs& from)
 {
-    springs_.resize(static_cast<std::size_t>(from.size()));
-    for (std::size_t b = 0; b < static_cast<std::size_t>(from.size()); ++b) {
-        springs_.i[b] = from.i[b], springs_.j[b] = from.j[b];
-        springs_.tx[b] = static_cast<float>(from.tx[b]), springs_.ty[b] = static_cast<float>(from.ty[b]);
-        springs_.tz[b] = static_cast<float>(from.tz[b]), springs_.k[b] = static_cast<float>(from.k[b] * unit_ / EA_);
-    }
-    share_springs();
+    const auto visit_blocks = [&](std::size_t b, auto&& visit) {
+        const std::int64_t one = from.i[b] / block_rows, two = from.j[b] / block_rows;
+        visit(static_cast<std::size_t>(one));
+        if (two != one) visit(static_cast<std::size_t>(two));
+    };
+    first_spring_.assign(static_cast<std::size_t>(blocks()) + 1, 0);
+    for (std::size_t b = 0; b < from.i.size(); ++b)
+        visit_blocks(b, [&](std::size_t block) { ++first_spring_[block + 1]; });
+    for (std::size_t k = 1; k < first_spring_.size(); ++k) first_spring_[k] += first_spring_[k - 1];
+    springs_.resize(static_cast<std::size_t>(first_spring_.back()));
+    auto fill = first_spring_;
+    for (std::size_t b = 0; b < from.i.size(); ++b)
+        visit_blocks(b, [&](std::size_t block) {
+            const auto to = static_cast<std::size_t>(fill[block]++);
+            springs_.i[to] = from.i[b], springs_.j[to] = from.j[b];
+            springs_.tx[to] = static_cast<float>(from.tx[b]), springs_.ty[to] = static_cast<float>(from.ty[b]);
+            springs_.tz[to] = static_cast<float>(from.tz[b]);
+            springs_.k[to] = static_cast<float>(from.k[b] * unit_ / EA_);
+        });
 }
 
-void SingleStiffness::share_springs()
-{
-    for (Share& share : shares_) {
-        const std::int64_t low = share.begin * block_rows, limit = share.end * block_rows;
-        share.spring_begin = first_from(springs_.i, springs_.count, low);
-        share.spring_end = first_from(springs_.i, springs_.count, limit);
-        share.border_springs.pick(springs_, ending_in(springs_.j, share.spring_begin, low, limit));
-    }
-}
-
-void SingleStiffness::apply(std::int64_t part, const float* p, float* q) const
+void SingleStiffness::add_border(std::int64_t part, const float* p, float* q) const
 {
     const Share& s = shares_[static_cast<std::size_t>(part)];
     const std::int64_t low = s.begin * block_rows, limit = s.end * block_rows;
-    std::fill(q + floats * low, q + floats * limit, 0.0F);
     add_beams(section_, s.border_beams, 0, s.border_beams.count, low, limit, p, q);
-    add_beams(section_, beams_, s.beam_begin, s.beam_end, low, limit, p, q);
-    add_springs(s.border_springs, 0, s.border_springs.count, low, limit, p, q);
-    add_springs(springs_, s.spring_begin, s.spring_end, low, limit, p, q);
+}
+
+void SingleStiffness::add_block(std::int64_t block, const float* p, float* q) const
+{
+    const auto b = static_cast<std::size_t>(block);
+    const Share& s = shares_[static_cast<std::size_t>(share_of_[b])];
+    const std::int64_t low = s.begin * block_rows, limit = s.end * block_rows;
+    add_beams(section_, beams_, first_beam_[b], first_beam_[b + 1], low, limit, p, q);
+    add_springs(springs_, first_spring_[b], first_spring_[b + 1], block * block_rows, (block + 1) * block_rows, p, q);
 }
 
 }  // namespace craze::mechanics

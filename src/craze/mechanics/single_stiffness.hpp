@@ -32,8 +32,10 @@ public:
     void set_beams(const Stiffness& stiffness, double mean_radius);
     void set_springs(const Springs& springs);
 
-    /// One thread's part of q = K p: the rows of blocks [begin_block(part), begin_block(part + 1)).
-    void apply(std::int64_t part, const float* p, float* q) const;
+    /// One thread's part of q += K p: to the rows of blocks [begin_block(part), begin_block(part + 1)) add first what
+    /// beams from before bring, then block by block, ascending, what begins there; the rows of a block are then final.
+    void add_border(std::int64_t part, const float* p, float* q) const;
+    void add_block(std::int64_t block, const float* p, float* q) const;
     std::int64_t parts() const { return static_cast<std::int64_t>(shares_.size()); }
     std::int64_t begin_block(std::int64_t part) const
     {
@@ -44,16 +46,16 @@ public:
 private:
     struct Share {
         std::int64_t begin = 0, end = 0;  ///< blocks
-        std::int64_t beam_begin = 0, beam_end = 0, spring_begin = 0, spring_end = 0;
-        SingleBonds border_beams, border_springs;
+        SingleBonds border_beams;
     };
-    void share_springs();
 
     std::int64_t elements_ = 0;
     double unit_ = 1.0, EA_ = 1.0;
     SingleSection section_;
     SingleBonds beams_, springs_;
     std::vector<Share> shares_;
+    std::vector<std::int32_t> share_of_;                   ///< per block
+    std::vector<std::int64_t> first_beam_, first_spring_;  ///< per block
 };
 
 }  // namespace craze::mechanics

@@ -312,10 +312,14 @@ TEST(SingleStiffness, AgreesWithDoublePrecisionAndGivesTheSameBitsOnAnyNumberOfT
         SingleStiffness single;
         single.set_beams(stiffness, R);
         const auto rows = static_cast<std::size_t>(single.blocks() * block_rows);
-        std::vector<float> p(8 * rows, 0.0F), q(8 * rows, 1.0F);
+        std::vector<float> p(8 * rows, 0.0F), q(p);
         for (std::size_t k = 0; k < a.u.size(); ++k)
             p[8 * (k / 6) + k % 6] = static_cast<float>(a.u[k] / (k % 6 < 3 ? R : 1.0));
-        for (std::int64_t part = 0; part < single.parts(); ++part) single.apply(part, p.data(), q.data());
+        for (std::int64_t part = 0; part < single.parts(); ++part) {
+            single.add_border(part, p.data(), q.data());
+            for (auto b = single.begin_block(part); b < single.begin_block(part + 1); ++b)
+                single.add_block(b, p.data(), q.data());
+        }
         double worst = 0.0, largest = 0.0;
         for (std::size_t k = 0; k < a.u.size(); ++k) {
             const double expected = f[k] / EA / (k % 6 < 3 ? 1.0 : R);
@@ -339,11 +343,11 @@ TEST(Multilevel, IsSymmetricPositiveAndLeavesImposedDegreesOfFreedomAlone)
     const std::int64_t blocks = (lattice.elements() + block_rows - 1) / block_rows;
     const auto rows = static_cast<std::size_t>(blocks * block_rows);
     const auto answer = [&](const std::vector<float>& r, double& rz) {
-        std::vector<float> z(r.size(), 0.0F), p(r.size(), 0.0F);
+        std::vector<float> z(r.size(), 0.0F), p(z), d(z);
         rz = 0.0;
         for (std::int64_t b = 0; b < blocks; ++b) rz += preconditioner.descend(b, r.data(), z.data());
         rz += preconditioner.solve_coarse();
-        for (std::int64_t b = 0; b < blocks; ++b) preconditioner.ascend(b, z.data(), 0.0F, p.data());
+        for (std::int64_t b = 0; b < blocks; ++b) preconditioner.ascend(b, z.data(), 0.0F, d.data(), 0.0F, p.data());
         return p;
     };
     const auto load = [&](std::uint64_t seed) {
@@ -389,10 +393,10 @@ TEST(Multilevel, ToldOfOtherSpringsAnswersAsIfMadeAnew)
     for (std::size_t k = 0; k < 6 * lattice.r.size(); ++k)
         r[8 * (k / 6) + k % 6] = static_cast<float>(random.uniform(-1, 1));
     const auto answer = [&](Multilevel& preconditioner) {
-        std::vector<float> z(r.size(), 0.0F), p(r.size(), 0.0F);
+        std::vector<float> z(r.size(), 0.0F), p(z), d(z);
         for (std::int64_t b = 0; b < blocks; ++b) preconditioner.descend(b, r.data(), z.data());
         preconditioner.solve_coarse();
-        for (std::int64_t b = 0; b < blocks; ++b) preconditioner.ascend(b, z.data(), 0.0F, p.data());
+        for (std::int64_t b = 0; b < blocks; ++b) preconditioner.ascend(b, z.data(), 0.0F, d.data(), 0.0F, p.data());
         return p;
     };
     Multilevel told, anew;
