@@ -104,6 +104,10 @@ Json summary(const Reproduction& result)
                           {"mean", found->second.mean},
                           {"deviation", found->second.deviation},
                           {"fitted", is_fitted(result, t.key)}};
+        for (const auto& seed : result.seeds) {
+            const auto own = seed.find(t.key);
+            numbers[t.key]["by_seed"].push_back(own == seed.end() ? Json() : Json(own->second));
+        }
         if (const auto seen = result.images.find(t.key); seen != result.images.end())
             numbers[t.key]["by_images"] = seen->second;
     }

@@ -174,6 +174,7 @@ TEST(Reproduction, GoesOnFromWhatIsDoneAndWritesItsPages)
                              "fig23_stress.svg", "fig25_cycles.svg", "table4_strengths.svg", "openings_ratio.svg",
                              "bending_share.svg", "fig19_compression_y.png", "fig24_tension.png", "figures.json"})
         EXPECT_TRUE(std::filesystem::exists(folder / file)) << file;
+    EXPECT_EQ(summary(result)["numbers"]["UTS.30"]["by_seed"], Json::array({first.numbers.at("UTS.30")}));
     EXPECT_NE(page(result).find("pores and cracks"), std::string::npos);
     EXPECT_NE(page(result).find("times a factor"), std::string::npos);
     EXPECT_NE(page(result).find("| 0.5 |"), std::string::npos);
