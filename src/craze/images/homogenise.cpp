@@ -18,14 +18,58 @@ struct RowSums {
     std::int64_t n = 0, v = 0, x = 0, xx = 0, xv = 0;
 };
 
+// In blocks short enough for 32 bits, whose own x count from their first voxel.
 CRAZE_MULTIVERSION RowSums sums_of(const std::uint8_t* row, std::int64_t nx, int low, int high)
 {
+    constexpr std::int64_t block = 256;
     RowSums sums;
-    for (std::int64_t x = 0; x < nx; ++x) {
-        const std::int64_t in = row[x] >= low && row[x] <= high ? 1 : 0, v = in * row[x];
-        sums.n += in, sums.v += v, sums.x += in * x, sums.xx += in * x * x, sums.xv += v * x;
+    for (std::int64_t x0 = 0; x0 < nx; x0 += block) {
+        const auto length = static_cast<std::int32_t>(std::min(block, nx - x0));
+        std::int32_t n = 0, v = 0, x = 0, xx = 0, xv = 0;
+        for (std::int32_t i = 0; i < length; ++i) {
+            const std::int32_t in = row[x0 + i] >= low && row[x0 + i] <= high ? 1 : 0, level = in * row[x0 + i];
+            n += in, v += level, x += in * i, xx += in * i * i, xv += level * i;
+        }
+        sums.n += n, sums.v += v, sums.x += x + x0 * n, sums.xv += xv + x0 * v;
+        sums.xx += xx + 2 * x0 * x + x0 * x0 * n;
     }
     return sums;
+}
+
+// Where in a thread's table the voxels of a row count: four tables for each layer, as equal neighbours would wait for
+// each other in one.
+constexpr std::int64_t tables = 4;
+CRAZE_MULTIVERSION void places_of(std::int32_t* __restrict to, std::int64_t nx, float start, float step, float last)
+{
+    for (std::int64_t x = 0; x < nx; ++x) {
+        const float at = start + step * static_cast<float>(x);
+        const auto layer = static_cast<std::int32_t>(at < 0.0F ? 0.0F : at > last ? last : at);
+        to[x] = (layer * static_cast<std::int32_t>(tables) + static_cast<std::int32_t>(x % tables)) * 256;
+    }
+}
+
+CRAZE_MULTIVERSION void shift_levels(std::uint8_t* __restrict to, const std::uint8_t* __restrict from,
+                                     const float* __restrict by, std::int64_t n)
+{
+    for (std::int64_t x = 0; x < n; ++x) {
+        const float v = static_cast<float>(from[x]) + by[x] + 0.5F;
+        to[x] = static_cast<std::uint8_t>(v > 255.0F ? 255.0F : v > 0.0F ? v : 0.0F);
+    }
+}
+
+CRAZE_MULTIVERSION void scale_levels(std::uint8_t* __restrict to, const std::uint8_t* __restrict from,
+                                     const float* __restrict by, std::int64_t n)
+{
+    for (std::int64_t x = 0; x < n; ++x) {
+        const float v = static_cast<float>(from[x]) * by[x] + 0.5F;
+        to[x] = static_cast<std::uint8_t>(v > 255.0F ? 255.0F : v > 0.0F ? v : 0.0F);
+    }
+}
+
+// Between two neighbours of a table, for a whole row.
+CRAZE_MULTIVERSION void between(float* __restrict to, const float* __restrict table, float share, std::int64_t n)
+{
+    for (std::int64_t x = 0; x < n; ++x) to[x] = table[x] + share * (table[x + 1] - table[x]);
 }
 
 double mean_of(const Histogram& h, double& count)
@@ -119,47 +163,34 @@ double Homogeniser::position(double x, double y, double z) const
 void Homogeniser::learn(std::int64_t z, std::span<const std::uint8_t> slice)
 {
     if (layer_.empty()) choose_direction();
-    if (direction_.x == 0.0 && direction_.y == 0.0) {
-        const Histogram h = histogram_of(slice);
-        auto& layer = layer_[static_cast<std::size_t>(std::llround(position(0, 0, static_cast<double>(z))))];
-        for (std::size_t v = 0; v < 256; ++v) layer[v] += h[v];
-        return;
-    }
-    // Each thread counts into the few layers that its rows touch; whole numbers have no order.
+    // Each thread counts for itself; whole numbers have no order.
     const std::int64_t team = std::min<std::int64_t>(threads(), shape_.ny);
-    std::vector<std::vector<Histogram>> parts(static_cast<std::size_t>(team));
-    std::vector<std::int64_t> first(static_cast<std::size_t>(team));
+    counts_.resize(std::max(counts_.size(), static_cast<std::size_t>(team)));
     parallel_tasks(team, [&](std::int64_t t) {
-        const std::int64_t begin = shape_.ny * t / team, end = shape_.ny * (t + 1) / team;
-        const auto far_x = static_cast<double>(shape_.nx - 1), w = static_cast<double>(z);
-        double low = 1e300, high = -1e300;
-        for (const double x : {0.0, far_x})
-            for (const std::int64_t y : {begin, end - 1}) {
-                low = std::min(low, position(x, static_cast<double>(y), w));
-                high = std::max(high, position(x, static_cast<double>(y), w));
-            }
-        const std::int64_t from = std::max<std::int64_t>(0, static_cast<std::int64_t>(low) - 1);
-        const std::int64_t to = std::min(layers_ - 1, static_cast<std::int64_t>(high) + 2);
-        auto& part = parts[static_cast<std::size_t>(t)];
-        part.assign(static_cast<std::size_t>(to - from + 1), Histogram{});
-        first[static_cast<std::size_t>(t)] = from;
-        for (std::int64_t y = begin; y < end; ++y) {
+        std::vector<std::uint32_t>& counts = counts_[static_cast<std::size_t>(t)];
+        counts.resize(static_cast<std::size_t>(layers_ * tables * 256));
+        std::vector<std::int32_t> place(static_cast<std::size_t>(shape_.nx));
+        for (std::int64_t y = shape_.ny * t / team; y < shape_.ny * (t + 1) / team; ++y) {
             const std::uint8_t* row = slice.data() + shape_.nx * y;
-            const double at = position(0.0, static_cast<double>(y), w) + 0.5;
-            for (std::int64_t x = 0; x < shape_.nx; ++x) {
-                const auto layer = static_cast<std::int64_t>(at + direction_.x * static_cast<double>(x));
-                ++part[static_cast<std::size_t>(std::clamp(layer, from, to) - from)][row[x]];
-            }
+            places_of(place.data(), shape_.nx,
+                      static_cast<float>(position(0.0, static_cast<double>(y), static_cast<double>(z)) + 0.5),
+                      static_cast<float>(direction_.x), static_cast<float>(layers_ - 1));
+            for (std::size_t x = 0; x < place.size(); ++x) ++counts[static_cast<std::size_t>(place[x]) + row[x]];
         }
     });
-    for (std::size_t t = 0; t < parts.size(); ++t)
-        for (std::size_t i = 0; i < parts[t].size(); ++i)
-            for (std::size_t v = 0; v < 256; ++v) layer_[static_cast<std::size_t>(first[t]) + i][v] += parts[t][i][v];
+}
+
+void Homogeniser::gather_counts()
+{
+    for (const auto& counts : counts_)
+        for (std::size_t i = 0; i < counts.size(); ++i) layer_[i / (256 * tables)][i % 256] += counts[i];
+    counts_.clear();
 }
 
 void Homogeniser::settle()
 {
     if (layer_.empty()) choose_direction();
+    gather_counts();
     // A layer at a corner holds few voxels: it borrows from its neighbours until it has enough.
     const auto total = [](const Histogram& h) { return std::accumulate(h.begin(), h.end(), std::int64_t{0}); };
     std::int64_t largest = 0;
@@ -188,26 +219,49 @@ void Homogeniser::settle()
                                                  : p > 0.0                                              ? level / p
                                                                                                         : 1.0));
     correction_.push_back(correction_.back());
+    // The same at the steps that a row takes through the layers: neighbouring voxels read neighbouring values.
+    steps_.clear();
+    if (std::abs(direction_.x) < least_step) return;
+    const auto length = static_cast<double>(layers_ - 1);
+    const auto steps = static_cast<std::int64_t>(length / std::abs(direction_.x)) + shape_.nx + 2;
+    for (std::int64_t i = 0; i < steps; ++i)
+        steps_.push_back(correction_at(static_cast<double>(i) * direction_.x + (direction_.x < 0.0 ? length : 0.0)));
+}
+
+float Homogeniser::correction_at(double layer) const
+{
+    const double at = std::clamp(layer, 0.0, static_cast<double>(layers_ - 1));
+    const auto i = static_cast<std::size_t>(at);
+    return correction_[i] + static_cast<float>(at - static_cast<double>(i)) * (correction_[i + 1] - correction_[i]);
+}
+
+void Homogeniser::corrections_of_row(double start, std::span<float> to) const
+{
+    const double step = direction_.x;
+    if (!steps_.empty()) {
+        const double from = std::max(0.0, (start - (step < 0.0 ? static_cast<double>(layers_ - 1) : 0.0)) / step);
+        const std::size_t i = std::min(static_cast<std::size_t>(from), steps_.size() - to.size() - 1);
+        return between(to.data(), &steps_[i], static_cast<float>(from - std::floor(from)), std::ssize(to));
+    }
+    // Hardly a layer from end to end: straight from one multiple of 64 voxels to the next.
+    constexpr std::size_t stretch = 64;
+    for (std::size_t x = 0; x < to.size(); x += stretch) {
+        const float a = correction_at(start + step * static_cast<double>(x)),
+                    b = correction_at(start + step * static_cast<double>(x + stretch));
+        for (std::size_t i = x; i < std::min(to.size(), x + stretch); ++i)
+            to[i] = a + (b - a) * (static_cast<float>(i - x) / static_cast<float>(stretch));
+    }
 }
 
 void Homogeniser::remove(std::int64_t z, std::span<const std::uint8_t> slice, std::span<std::uint8_t> to) const
 {
     const bool offset = settings_.correction == Homogenise::Correction::offset;
-    const auto last = static_cast<float>(layers_ - 1);
-    const auto step = static_cast<float>(direction_.x);
     parallel_ranges(shape_.ny, [&](std::int64_t begin, std::int64_t end) {
+        std::vector<float> by(static_cast<std::size_t>(shape_.nx));
         for (std::int64_t y = begin; y < end; ++y) {
+            corrections_of_row(position(0.0, static_cast<double>(y), static_cast<double>(z)), by);
             const std::uint8_t* from = slice.data() + shape_.nx * y;
-            std::uint8_t* out = to.data() + shape_.nx * y;
-            const auto start = static_cast<float>(position(0.0, static_cast<double>(y), static_cast<double>(z)));
-            for (std::int64_t x = 0; x < shape_.nx; ++x) {
-                const float at = std::clamp(start + step * static_cast<float>(x), 0.0F, last);
-                const auto i = static_cast<std::size_t>(at);
-                const float f = at - static_cast<float>(i),
-                            c = correction_[i] + f * (correction_[i + 1] - correction_[i]);
-                const float v = offset ? static_cast<float>(from[x]) + c : static_cast<float>(from[x]) * c;
-                out[x] = static_cast<std::uint8_t>(std::clamp(v + 0.5F, 0.0F, 255.0F));
-            }
+            (offset ? shift_levels : scale_levels)(to.data() + shape_.nx * y, from, by.data(), shape_.nx);
         }
     });
 }

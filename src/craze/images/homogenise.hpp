@@ -36,6 +36,9 @@ public:
 private:
     void choose_direction();
     double position(double x, double y, double z) const;  // in layers
+    void gather_counts();
+    float correction_at(double layer) const;
+    void corrections_of_row(double start, std::span<float> to) const;
 
     Shape shape_;
     Homogenise settings_;
@@ -46,7 +49,10 @@ private:
     std::int64_t layers_ = 0;
     std::vector<Histogram> layer_;
     std::vector<double> profile_;
-    std::vector<float> correction_;
+    std::vector<float> correction_;                   // at each layer, the last one twice
+    static constexpr double least_step = 0.01;        // layers per voxel
+    std::vector<float> steps_;                        // correction at multiples of the step of a row, if long enough
+    std::vector<std::vector<std::uint32_t>> counts_;  // of each thread
 };
 
 }  // namespace craze::images

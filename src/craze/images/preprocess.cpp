@@ -194,7 +194,7 @@ private:
         done_.sigma = filter.sigma, done_.h = filter.h;
         say(fmt::format("images: noise {:.2f} gray levels, non-local means with h = {:.2f}", filter.sigma, filter.h));
         // Slabs of like thickness: thin ones spend much on the voxels between them.
-        constexpr std::int64_t thick = 96;
+        constexpr std::int64_t thick = 192;
         std::int64_t slab = (shape.nz + (shape.nz + thick - 1) / thick - 1) / ((shape.nz + thick - 1) / thick);
         while (slab > 1 && static_cast<double>(memory_of_slab(filter, shape, slab)) > settings_.memory) --slab;
         if (static_cast<double>(memory_of_slab(filter, shape, slab)) > settings_.memory)

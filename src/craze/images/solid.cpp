@@ -1,20 +1,28 @@
 #include "craze/images/solid.hpp"
 
+#include "craze/core/parallel.hpp"
+
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <numeric>
 
 namespace craze::images {
 
 Histogram histogram_of(std::span<const std::uint8_t> levels)
 {
-    std::array<Histogram, 4> parts{};  // equal neighbours would wait for each other in one table
-    std::size_t i = 0;
-    for (; i + 4 <= levels.size(); i += 4)
-        for (std::size_t k = 0; k < 4; ++k) ++parts[k][levels[i + k]];
-    for (; i < levels.size(); ++i) ++parts[0][levels[i]];
-    for (std::size_t v = 0; v < 256; ++v) parts[0][v] += parts[1][v] + parts[2][v] + parts[3][v];
-    return parts[0];
+    Histogram sum{};
+    std::mutex lock;
+    parallel_ranges(std::ssize(levels), [&](std::int64_t begin, std::int64_t end) {
+        std::array<Histogram, 4> parts{};  // equal neighbours would wait for each other in one table
+        auto i = static_cast<std::size_t>(begin);
+        for (; i + 4 <= static_cast<std::size_t>(end); i += 4)
+            for (std::size_t k = 0; k < 4; ++k) ++parts[k][levels[i + k]];
+        for (; i < static_cast<std::size_t>(end); ++i) ++parts[0][levels[i]];
+        const std::lock_guard guard(lock);
+        for (std::size_t v = 0; v < 256; ++v) sum[v] += parts[0][v] + parts[1][v] + parts[2][v] + parts[3][v];
+    });
+    return sum;
 }
 
 Solid solid_of(const Histogram& histogram)

@@ -88,7 +88,7 @@ StripeFilter::StripeFilter(std::int64_t nx, std::int64_t ny, const Stripes& sett
     for (std::int64_t k = 0;; ++k) {
         const double waves = static_cast<double>(k) * settings.length;
         const double share = std::exp(-0.5 * waves * waves);
-        if (share < 0.01 || k >= nx_) break;
+        if (share < 0.05 || k >= nx_) break;
         share_.push_back(static_cast<float>(share));
         const double norm =
             k == 0 ? std::sqrt(1.0 / static_cast<double>(nx_)) : std::sqrt(2.0 / static_cast<double>(nx_));

@@ -150,6 +150,44 @@ TEST(Homogeniser, FindsAndRemovesAPlantedGradient)
     }
 }
 
+// Rows that cross many layers, few, or next to none, either way: each part of the volume ends at the same level.
+TEST(Homogeniser, LevelsEveryCornerWhateverTheDirection)
+{
+    const Shape shape{80, 60, 40};
+    for (const Vec3& slope : {Vec3{0.2, 0.05, 0.05}, Vec3{-0.3, 0.02, 0.1}, Vec3{-0.004, 0.3, 0.2}, Vec3{0, 0, -0.4}})
+        for (const auto correction : {Homogenise::Correction::offset, Homogenise::Correction::gain}) {
+            Volume<std::uint8_t> v(shape);
+            for (std::int64_t z = 0; z < shape.nz; ++z)
+                for (std::int64_t y = 0; y < shape.ny; ++y)
+                    for (std::int64_t x = 0; x < shape.nx; ++x) {
+                        Random random(4, static_cast<std::uint64_t>(x + 80 * (y + 60 * z)));
+                        const double shade = slope.x * static_cast<double>(x) + slope.y * static_cast<double>(y) +
+                                             slope.z * static_cast<double>(z);
+                        v(x, y, z) =
+                            static_cast<std::uint8_t>(std::clamp(165.0 + shade + 2.0 * random.normal(), 0.0, 255.0));
+                    }
+            Homogenise how;
+            how.correction = correction;
+            Homogeniser homogeniser(shape, how, histogram_of(v.values()));
+            for (std::int64_t z = 0; z < shape.nz; ++z) homogeniser.fit(z, v.slice(z));
+            for (std::int64_t z = shape.nz - 1; z >= 0; --z) homogeniser.learn(z, v.slice(z));
+            homogeniser.settle();
+            for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(homogeniser.gradient()[axis], slope[axis], 0.005);
+            Volume<std::uint8_t> out(shape);
+            for (std::int64_t z = 0; z < shape.nz; ++z) homogeniser.remove(z, v.slice(z), out.slice(z));
+            double sum[8] = {}, count[8] = {};
+            for (std::int64_t z = 0; z < shape.nz; ++z)
+                for (std::int64_t y = 0; y < shape.ny; ++y)
+                    for (std::int64_t x = 0; x < shape.nx; ++x) {
+                        const int corner = (x >= 40 ? 1 : 0) + (y >= 30 ? 2 : 0) + (z >= 20 ? 4 : 0);
+                        sum[corner] += out(x, y, z), count[corner] += 1.0;
+                    }
+            for (int corner = 0; corner < 8; ++corner)
+                EXPECT_NEAR(sum[corner] / count[corner], sum[0] / count[0], 0.3)
+                    << corner << " " << slope.x << " " << static_cast<int>(correction);
+        }
+}
+
 // Power of the mean of all levels along each column, variations over more than 65 px left out.
 double curtains_of(const Volume<std::uint8_t>& v, std::int64_t y0, std::int64_t y1)
 {
