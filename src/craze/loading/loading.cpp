@@ -19,7 +19,7 @@
 namespace craze::loading {
 namespace {
 
-RigOptions rig_options(const Settings& s) { return {s.face_reach, s.interior_margin, s.residual}; }
+RigOptions rig_options(const Settings& s) { return {s.face_reach, s.interior_margin, s.residual, s.curve_residual}; }
 
 /// A packing that came without its pores' elements would be calibrated to be as stiff as the dense ceramic.
 void tell_of_carved(const domain::Domain& dense)

@@ -111,6 +111,7 @@ Curve Rig::rest(const Loading& loading, const Watcher& watch)
 
     mechanics::State before;  // the point before the previous one
     double peak = 0.0;
+    const bool is_modulus = loading.kind == Loading::Kind::modulus;
     Progress progress(loading.name, static_cast<std::int64_t>(loading.path.size()));
     for (std::size_t k = 0; k < loading.path.size(); ++k) {
         const double s = loading.path[k], s_1 = k > 0 ? loading.path[k - 1] : 0.0,
@@ -130,7 +131,8 @@ Curve Rig::rest(const Loading& loading, const Watcher& watch)
         }
         mechanics::Equilibrium equilibrium;
         try {
-            equilibrium = solver_.solve(constraints(loading, s), std::move(start));
+            equilibrium = solver_.solve(constraints(loading, s), std::move(start),
+                                        is_modulus ? options_.residual : options_.curve_residual);
         } catch (const ComputationFailed& error) {
             throw ComputationFailed(fmt::format("{}: no rest found at program strain {:.4g} (reached {:.4g}): {}",
                                                 loading.name, s, s_1, error.what()));

@@ -112,7 +112,9 @@ void describe(Schema& schema, Settings& s)
                   "sides: elements whose centre lies within this many of their radii of the wall");
     schema.number("interior_margin", s.interior_margin, {0.0, 1e3},
                   "interior strain: elements this many mean radii away from every wall");
-    schema.number("residual", s.residual, {1e-12, 1e-2}, "residual of equilibrium over the driving forces");
+    schema.number("residual", s.residual, {1e-12, 1e-2}, "residual of equilibrium over the driving forces, moduli");
+    schema.number("curve_residual", s.curve_residual, {1e-12, 1e-2},
+                  "the same along curves; 5e-5 gives the stress to 1e-5 and K to 1e-4");
     schema.group("moduli", "Young's moduli and Poisson's ratios at small strain [Table 3]", [&] {
         schema.flag("run", s.moduli.run, "measure them");
         schema.texts("specimens", s.moduli.specimens, "empty: all of loading.specimens");

@@ -215,9 +215,10 @@ void check_shapes(const Lattice& lattice, const Constraints& constraints, const 
 
 }  // namespace
 
-Equilibrium EquilibriumSolver::solve(const Constraints& constraints, State start)
+Equilibrium EquilibriumSolver::solve(const Constraints& constraints, State start, std::optional<double> asked)
 {
     Work& w = *work_;
+    const double tolerance = asked.value_or(w.options.tolerance);
     check_shapes(w.lattice, constraints, start);
     Equilibrium out{std::move(start), {}, 0.0, 0, 0, 0};
     w.take_kinds(out.state.kind);
@@ -235,7 +236,7 @@ Equilibrium EquilibriumSolver::solve(const Constraints& constraints, State start
         largest_scale = std::max(largest_scale, scale_now);
         const double scale = std::max(scale_now, 1e-6 * largest_scale);
         out.residual = scale > 0.0 ? norm / scale : 0.0;
-        if (out.residual <= w.options.tolerance) break;
+        if (out.residual <= tolerance) break;
         const bool changed = w.take_closed_set();
         out.newton += changed || round == 0;
         const bool stalled = !changed && !(norm < 0.5 * before);
@@ -254,12 +255,12 @@ Equilibrium EquilibriumSolver::solve(const Constraints& constraints, State start
                 "conjugate-gradient "
                 "iterations and {} changes of the closed contacts. Try smaller load steps, a looser tolerance or more "
                 "iterations; a specimen cut through by cracks may have nothing left to carry the load",
-                out.residual, w.options.tolerance, out.iterations, out.newton));
+                out.residual, tolerance, out.iterations, out.newton));
         if (!w.preconditioner_fits || !w.springs_fit) {
             w.set_up_preconditioner();
             if (search == Search::going_on) search = Search::anew;
         }
-        const double goal = 0.5 * w.options.tolerance * scale;
+        const double goal = 0.7 * tolerance * scale;
         const std::int64_t most = w.options.iterations - out.iterations;
         InnerSolver::Result inner;
         if (search == Search::in_double) {
@@ -278,7 +279,7 @@ Equilibrium EquilibriumSolver::solve(const Constraints& constraints, State start
         add_scaled(out.state.u, s, w.d);
         w.check_reason(out.state);
     }
-    out.forces = forces(w.lattice, out.state, w.options.free_contacts);
+    out.forces = forces(w.lattice, out.state, *w.stiffness, w.contacts);
     return out;
 }
 

@@ -8,6 +8,8 @@
 #include "craze/mechanics/state.hpp"
 
 #include <memory>
+#include <optional>
+#include <utility>
 
 namespace craze::mechanics {
 
@@ -48,7 +50,9 @@ public:
     /// @param start  where to begin, with the kind each bond has now: the previous equilibrium, an affine state or rest
     /// @throws InvalidInput       when a number is not finite or shapes disagree
     /// @throws ComputationFailed  when the tolerance is not reached, with the residual that was and what to try
-    Equilibrium solve(const Constraints& constraints, State start);
+    Equilibrium solve(const Constraints& constraints, State start) { return solve(constraints, std::move(start), {}); }
+    /// The same to another tolerance than that of the options.
+    Equilibrium solve(const Constraints& constraints, State start, std::optional<double> tolerance);
 
 private:
     struct Work;

@@ -2,8 +2,6 @@
 
 #include "craze/core/errors.hpp"
 #include "craze/core/parallel.hpp"
-#include "craze/mechanics/contacts.hpp"
-#include "craze/mechanics/stiffness.hpp"
 #include "craze/mechanics/vectors.hpp"
 
 #include <fmt/format.h>
@@ -41,15 +39,20 @@ Forces forces(const Lattice& lattice, const State& state, bool free_contacts)
     if (state.u.size() != 6 * lattice.r.size() || state.kind.size() != lattice.i.size())
         throw InvalidInput(fmt::format("the state has {} numbers and {} bonds, the lattice needs {} and {}",
                                        state.u.size(), state.kind.size(), 6 * lattice.r.size(), lattice.i.size()));
+    return forces(lattice, state, Stiffness(lattice, state.kind),
+                  unilateral_contacts(lattice, state.kind, free_contacts));
+}
+
+Forces forces(const Lattice& lattice, const State& state, const Stiffness& stiffness,
+              const UnilateralContacts& contacts)
+{
     Forces out;
     out.force.resize(state.u.size());
-    const Stiffness stiffness(lattice, state.kind);
-    stiffness.apply(state.u, out.force);
+    stiffness.apply(state.u, out.force, false);
     out.energy = 0.5 * dot(out.force, state.u);
     for (double& f : out.force) f = -f;
 
     double square = beam_force_square(lattice, state);
-    const auto contacts = unilateral_contacts(lattice, state.kind, free_contacts);
     std::vector<double> gap(contacts.i.size());
     gaps(contacts, state.u, gap);
     add_contact_forces(contacts, gap, out.force);

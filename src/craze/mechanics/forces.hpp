@@ -2,8 +2,10 @@
 
 #pragma once
 
+#include "craze/mechanics/contacts.hpp"
 #include "craze/mechanics/lattice.hpp"
 #include "craze/mechanics/state.hpp"
+#include "craze/mechanics/stiffness.hpp"
 
 #include <cstdint>
 #include <vector>
@@ -23,6 +25,10 @@ struct Forces {
 /// Forces of all bonds, and of unbonded neighbours if `free_contacts` [Eq. 5].
 /// @throws InvalidInput  when the state does not belong to the lattice
 Forces forces(const Lattice& lattice, const State& state, bool free_contacts = true);
+
+/// The same with what the kinds of the state's bonds make at hand.
+Forces forces(const Lattice& lattice, const State& state, const Stiffness& stiffness,
+              const UnilateralContacts& contacts);
 
 /// Square of Forces::scale that beams bring.
 double beam_force_square(const Lattice& lattice, const State& state);

@@ -33,10 +33,10 @@ public:
     void ascend(std::int64_t block, const float* z, float step, float* d, float beta, float* p) const;
 
 private:
-    /// D^-1 of every node.
+    /// D^-1 of every node: entries, each times the scales of its row and its column.
     struct Inverses {
         std::vector<std::int16_t> entries;  ///< shape (nodes, 6, 6)
-        std::vector<float> unit;            ///< what 1 stands for, per node
+        std::vector<float> scale;           ///< shape (nodes, 8), the last two of each 0
         void resize(std::int64_t nodes);
     };
     struct Level {

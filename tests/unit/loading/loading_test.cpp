@@ -57,7 +57,7 @@ TEST(Rig, AffineDisplacementIsMeasuredAsItsStrain)
 
 TEST(Rig, OppositeSidesBearTheSameForce)
 {
-    Rig rig(packing(), {}, {}, {.residual = 1e-9});
+    Rig rig(packing(), {}, {}, {.residual = 1e-9, .curve_residual = 1e-9});
     Loading loading;
     loading.drive[2] = {false, 1.0};
     loading.path = {1e-3};
@@ -71,7 +71,7 @@ TEST(Rig, OppositeSidesBearTheSameForce)
 
 TEST(Rig, WorkOfTheSidesIsStoredInTheBeams)
 {
-    Rig rig(packing(), {}, {}, {.residual = 1e-9});
+    Rig rig(packing(), {}, {}, {.residual = 1e-9, .curve_residual = 1e-9});
     Loading loading;
     loading.drive[0] = {false, 1.0}, loading.drive[1] = {false, -0.5};
     loading.axis = 0;

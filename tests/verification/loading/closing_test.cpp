@@ -41,7 +41,7 @@ protected:
         s.specimens = {specimen};
         s.triaxial.eta = eta;
         s.triaxial.points = points;
-        Rig rig(domain, {}, {}, {.residual = 1e-7});
+        Rig rig(domain, {}, {}, {.residual = 1e-7, .curve_residual = 1e-7});
         return rig.rest(plan(s, domain.box).at(0)).points;
     }
     static inline domain::Discretisation* cracked_ = nullptr;
