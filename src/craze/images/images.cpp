@@ -11,10 +11,16 @@ Json json_of(const Vec3& v) { return {v.x, v.y, v.z}; }
 
 Json json_of(const Quality& q)
 {
-    return {{"step", q.step},       {"noise", q.noise},
-            {"stripes", q.stripes}, {"gradient_per_voxel", json_of(q.gradient)},
-            {"shading", q.shading}, {"solid_level", q.solid},
-            {"dark_level", q.dark}, {"contrast_to_noise", q.contrast_to_noise}};
+    return {{"step", q.step},
+            {"noise", q.noise},
+            {"noise_4px_apart", q.noise_apart},
+            {"noise_correlated", q.correlated},
+            {"stripes", q.stripes},
+            {"gradient_per_voxel", json_of(q.gradient)},
+            {"shading", q.shading},
+            {"solid_level", q.solid},
+            {"dark_level", q.dark},
+            {"contrast_to_noise", q.contrast_to_noise}};
 }
 
 }  // namespace

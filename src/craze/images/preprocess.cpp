@@ -189,7 +189,14 @@ private:
         filter.search = how.search;
         filter.neighbourhood = how.neighbourhood;
         filter.in_volume = how.method == Denoise::Method::nlm3d;
-        filter.sigma = how.sigma.value_or(done_.quality.back().noise);
+        // Neighbourhoods far apart differ by all of the noise, however alike neighbours are.
+        const Quality& now = done_.quality.back();
+        filter.sigma = how.sigma.value_or(now.correlated ? now.noise_apart : now.noise);
+        if (now.correlated && !how.sigma)
+            notice(
+                fmt::format("images: the noise is correlated, {:.2f} gray levels between neighbours and {:.2f} "
+                            "between voxels 4 px apart; taken as {:.2f} (images.denoise.sigma sets it)",
+                            now.noise, now.noise_apart, now.noise_apart));
         filter.h = how.h.value_or(std::max(0.5, how.strength * filter.sigma));
         done_.sigma = filter.sigma, done_.h = filter.h;
         say(fmt::format("images: noise {:.2f} gray levels, non-local means with h = {:.2f}", filter.sigma, filter.h));

@@ -47,19 +47,28 @@ std::vector<double> spectrum_of(const std::vector<double>& lines)
 
 }  // namespace
 
-double noise_of_slice(std::span<const std::uint8_t> slice, std::int64_t nx, std::int64_t ny)
+double noise_of_slice(std::span<const std::uint8_t> slice, std::int64_t nx, std::int64_t ny, std::int64_t apart,
+                      const Solid& solid)
 {
-    if (nx < 3 || ny < 3) return 0.0;
+    if (nx <= 2 * apart || ny <= 2 * apart) return 0.0;
+    const bool all = solid.low <= 0.0 && solid.high >= 255.0;
+    const auto in = [&](int level) { return all || (level >= solid.low && level <= solid.high); };
     // |1 -2 1; -2 4 -2; 1 -2 1| reaches 4080.
     std::vector<std::int64_t> counts(4096);
-    for (std::int64_t y = 1; y + 1 < ny; ++y) {
-        const std::uint8_t *a = slice.data() + nx * (y - 1), *b = a + nx, *c = b + nx;
-        for (std::int64_t x = 1; x + 1 < nx; ++x) {
-            const int edges = a[x] + c[x] + b[x - 1] + b[x + 1], corners = a[x - 1] + a[x + 1] + c[x - 1] + c[x + 1];
+    std::int64_t of = 0;
+    for (std::int64_t y = apart; y + apart < ny; ++y) {
+        const std::uint8_t *b = slice.data() + nx * y, *a = b - nx * apart, *c = b + nx * apart;
+        for (std::int64_t x = apart; x + apart < nx; ++x) {
+            const std::int64_t l = x - apart, r = x + apart;
+            if (!all && !(in(b[x]) && in(a[x]) && in(c[x]) && in(b[l]) && in(b[r]) && in(a[l]) && in(a[r]) &&
+                          in(c[l]) && in(c[r])))
+                continue;
+            const int edges = a[x] + c[x] + b[l] + b[r], corners = a[l] + a[r] + c[l] + c[r];
             ++counts[static_cast<std::size_t>(std::abs(corners - 2 * edges + 4 * b[x]))];
+            ++of;
         }
     }
-    const std::int64_t half = (nx - 2) * (ny - 2) / 2;
+    const std::int64_t half = of / 2;
     std::int64_t below = 0;
     for (std::size_t v = 0; v < counts.size(); ++v) {
         if (below + counts[v] > half) {
@@ -121,14 +130,18 @@ Quality quality_of(const std::string& step, Shape shape, const SliceReader& read
             dark += v * static_cast<double>(histogram[static_cast<std::size_t>(v)]);
     q.dark = darker > 0.0 ? dark / darker : solid.low;
 
-    std::vector<double> noise(at.size());
+    std::vector<double> noise(at.size()), apart(at.size()), farther(at.size());
     std::vector<std::vector<double>> spectra(at.size());
     parallel_tasks(static_cast<std::int64_t>(at.size()), [&](std::int64_t i) {
         const auto& slice = slices[static_cast<std::size_t>(i)];
         noise[static_cast<std::size_t>(i)] = noise_of_slice(slice, shape.nx, shape.ny);
+        apart[static_cast<std::size_t>(i)] = noise_of_slice(slice, shape.nx, shape.ny, 4, solid);
+        farther[static_cast<std::size_t>(i)] = noise_of_slice(slice, shape.nx, shape.ny, 8, solid);
         spectra[static_cast<std::size_t>(i)] = spectrum_of(line_means(slice, shape.nx, shape.ny, stripe_axis, solid));
     });
     q.noise = median(noise);
+    q.noise_apart = median(apart);
+    q.correlated = q.noise_apart > 1.3 * q.noise && median(farther) < 1.1 * q.noise_apart;
     q.contrast_to_noise = (q.solid - q.dark) / std::max(q.noise, 1e-3);
     const std::int64_t across = stripe_axis == 0 ? shape.ny : shape.nx;
     q.spectrum.assign(static_cast<std::size_t>(across), 0.0);
