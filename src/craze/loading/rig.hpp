@@ -16,8 +16,8 @@ namespace craze::loading {
 struct RigOptions {
     double face_reach = 1.05;       ///< Settings::face_reach
     double interior_margin = 10.0;  ///< Settings::interior_margin
-    double residual = 1e-6;         ///< Settings::residual
-    double curve_residual = 5e-5;   ///< Settings::curve_residual
+    double residual = 1e-6;         ///< Settings::residual: of loadings of one state, moduli
+    double curve_residual = 5e-5;   ///< Settings::curve_residual: of loadings of several
 };
 
 /// What is drawn or kept of a state as a loading goes by.

@@ -57,6 +57,37 @@ TEST(Hopeless, AFloatingSpecimenThatReachesNoWall)
     expect_advice<ComputationFailed>([&] { Rig(d, {}, {}, {}); }, "x");
 }
 
+// Exit 1, not a modulus of zero. In compression a curve waits for the crack to close.
+TEST(Hopeless, ASpecimenCutThroughByAnOpenCrack)
+{
+    auto d = packing();
+    for (std::size_t b = 0; b < d.bonds.i.size(); ++b) {
+        const double p = d.elements.centre(d.bonds.i[b]).x, q = d.elements.centre(d.bonds.j[b]).x;
+        if ((p - 0.5 * d.box.x) * (q - 0.5 * d.box.x) >= 0.0) continue;
+        d.bonds.kind[b] = domain::BondKind::contact_beam;
+        d.bonds.thickness[b] = 5e-9;
+    }
+    for (auto& thickness : d.near.thickness) thickness = 5e-9;
+    Rig rig(d, {}, {}, {});
+    for (const double end : {1e-3, -1e-4}) {
+        auto l = along_x(end);
+        l.kind = Loading::Kind::modulus;
+        expect_advice<ComputationFailed>([&] { rig.rest(l); }, "bears nothing along x");
+    }
+    auto l = along_x(1e-3);
+    l.kind = Loading::Kind::uniaxial;
+    expect_advice<ComputationFailed>([&] { rig.rest(l); }, "cuts it through");
+    l = along_x(-1e-2);
+    l.kind = Loading::Kind::uniaxial;
+    l.path = {-1e-4, -1e-2};
+    const auto points = rig.rest(l).points;
+    EXPECT_GT(points.at(2).closure, 0.1);
+    EXPECT_LT(points.at(2).stress.x, -1e6);
+    l.axis = 1, l.drive[0].free = true, l.drive[1] = {false, 1.0}, l.path = {1e-3};
+    l.kind = Loading::Kind::modulus;
+    EXPECT_GT(rig.rest(l).points.back().stress.y, 1e6) << "along the crack it bears";
+}
+
 TEST(Hopeless, StrainsBeyondReasonAndNumbersThatAreNone)
 {
     Rig rig(packing(), {}, {}, {});
