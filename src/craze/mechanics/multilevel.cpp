@@ -22,8 +22,8 @@ using Wholes = std::int32_t __attribute__((vector_size(32)));
 using Quad = float __attribute__((vector_size(16)));
 
 /// Inverse of a symmetric positive semi-definite block, scaled to a unit diagonal and shifted a little so that a
-/// direction without stiffness is finite; rows that are held are empty and stay so. Sixteen bits an entry: thanks to the
-/// shift that is less than the least eigenvalue (0.09 against 0.16), and iterations wait for less memory.
+/// direction without stiffness is finite; rows that are held are empty and stay so. Sixteen bits an entry: thanks to
+/// the shift that is less than the least eigenvalue (0.09 against 0.16), and iterations wait for less memory.
 void keep_inverse(const Block& block, std::int16_t* entries, float* outer)
 {
     constexpr double shift = 1e-3;
