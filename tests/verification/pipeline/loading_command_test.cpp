@@ -1,6 +1,5 @@
 // The loading room from outside: hopeless specimens end with advice, and a stopped loading goes on to the same bits.
 
-#include "craze/core/json.hpp"
 #include "craze/domain/room.hpp"
 #include "support/command.hpp"
 
@@ -76,21 +75,15 @@ TEST_F(LoadingCommand, OfAFloatingSpecimenSaysWhichWallItMisses)
     expect_ends(load("", "9 9 9"), 1, "Does the matter reach the wall of the box?");
 }
 
-/// Parts that nothing joins may drift, which is said, or bear nothing, which is right: never another number.
-TEST_F(LoadingCommand, OfASpecimenCutThroughGivesAdviceOrNothingButZero)
+/// Parts that nothing joins bear nothing, which is said: no number comes of them.
+TEST_F(LoadingCommand, OfASpecimenCutThroughGivesAdvice)
 {
     for (const int layers : {6, 7})
         for (const char* across : {"", "contact_beam,0.01"}) {
             edge = layers;
             write_cube(across);
-            const auto ran = load("--set loading.moduli.axes=x", fmt::format("{0} {0} {0}", 0.4 * layers));
-            if (ran.code != 0) {
-                expect_ends(ran, 1, "cut through");
-                continue;
-            }
-            const Json moduli = Json::parse(content_of(folder / "out/loading/summary.json"))["moduli"]["cracks"];
-            for (const char* kind : {"tension_Pa", "compression_Pa"})
-                EXPECT_LT(std::abs(moduli[kind]["x"].get<double>()), 1e4) << ran.out;
+            expect_ends(load("--set loading.moduli.axes=x", fmt::format("{0} {0} {0}", 0.4 * layers)), 1,
+                        "cuts it through");
         }
 }
 
