@@ -20,6 +20,12 @@ bool is_fitted(const Reproduction& result, const std::string& key)
 /// Numbers that the size of the box decides, and so says nothing about, when it is small.
 bool of_the_box(const std::string& key) { return key == "elements" || key == "bonds"; }
 
+/// Whole numbers from ten thousand on, which %g would write as powers of ten.
+std::string four_digits(double value)
+{
+    return std::abs(value) < 1e4 ? fmt::format("{:.4g}", value) : fmt::format("{:.0f}", value);
+}
+
 /// Of each variant the given numbers (column, first key that begins so). Empty where nothing was tried.
 std::string table(const std::vector<Variant>& tried, const char* title,
                   const std::vector<std::pair<const char*, const char*>>& columns)
@@ -58,15 +64,15 @@ std::string page(const Reproduction& result)
         if (found == ours.end()) continue;
         if (of_the_box(t.key) && result.settings.size == Size::small) continue;
         const double difference = found->second.mean / t.paper - 1.0;
-        md += fmt::format("| {} | {} | {:.4g} {} | {:.4g} | {:.2g} | {:+.1f} %{} | {:.0f} % | {} |", t.where, t.what,
-                          t.paper, t.unit, found->second.mean, found->second.deviation, 100.0 * difference,
-                          std::abs(difference) <= t.goal ? "" : " (missed)", 100.0 * t.goal,
+        md += fmt::format("| {} | {} | {} {} | {} | {:.2g} | {:+.1f} %{} | {:.0f} % | {} |", t.where, t.what,
+                          four_digits(t.paper), t.unit, four_digits(found->second.mean), found->second.deviation,
+                          100.0 * difference, std::abs(difference) <= t.goal ? "" : " (missed)", 100.0 * t.goal,
                           is_fitted(result, t.key) ? "fitted" : "predicted");
         if (images) {
             const auto seen = result.images.find(t.key);
-            md += seen == result.images.end()
-                      ? " | |"
-                      : fmt::format(" {:.4g} | {:.4g} |", seen->second, result.seeds.front().at(t.key));
+            md += seen == result.images.end() ? " | |"
+                                              : fmt::format(" {} | {} |", four_digits(seen->second),
+                                                            four_digits(result.seeds.front().at(t.key)));
         }
         md += "\n";
     }
