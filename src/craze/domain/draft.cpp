@@ -152,9 +152,10 @@ Domain finish(Draft draft, const Source& source)
     sort_links(draft.near);
 
     d.elements = std::move(draft.elements);
-    double dense_volume = 0.0;
-    for (const double r : d.elements.r) dense_volume += 4.0 / 3.0 * std::numbers::pi * r * r * r;
-    d.dense_volume = dense_volume = draft.dense_volume.value_or(dense_volume);
+    double spheres = 0.0;
+    for (const double r : d.elements.r) spheres += 4.0 / 3.0 * std::numbers::pi * r * r * r;
+    const double dense_volume = draft.dense_volume.value_or(spheres);
+    d.dense_volume = dense_volume;
     for (const Draft::Link& b : draft.bonds) {
         d.bonds.i.push_back(static_cast<std::int32_t>(b.i));
         d.bonds.j.push_back(static_cast<std::int32_t>(b.j));
@@ -189,7 +190,7 @@ Domain finish(Draft draft, const Source& source)
             d.near.thickness.push_back(0.0);
         }
     }
-    d.dense_volume = dense_volume;
+    d.dense_volume = dense_volume;  // join, which knows the spheres alone, has set its own
     return d;
 }
 

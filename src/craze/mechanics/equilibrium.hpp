@@ -9,7 +9,6 @@
 
 #include <memory>
 #include <optional>
-#include <utility>
 
 namespace craze::mechanics {
 
@@ -48,11 +47,10 @@ public:
     EquilibriumSolver& operator=(EquilibriumSolver&&) noexcept;
 
     /// @param start  where to begin, with the kind each bond has now: the previous equilibrium, an affine state or rest
+    /// @param tolerance  none: that of the options
     /// @throws InvalidInput       when a number is not finite or shapes disagree
     /// @throws ComputationFailed  when the tolerance is not reached, with the residual that was and what to try
-    Equilibrium solve(const Constraints& constraints, State start) { return solve(constraints, std::move(start), {}); }
-    /// The same to another tolerance than that of the options.
-    Equilibrium solve(const Constraints& constraints, State start, std::optional<double> tolerance);
+    Equilibrium solve(const Constraints& constraints, State start, std::optional<double> tolerance = {});
 
 private:
     struct Work;

@@ -7,6 +7,7 @@
 #include "craze/microstructure/classification.hpp"
 #include "craze/microstructure/threshold.hpp"
 #include "support/data.hpp"
+#include "support/speed.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -63,9 +64,7 @@ TEST(NonLocalMeans, AloneReachTheReferenceOnACropOfTheKnownCoating)
 {
     const auto data = support::data_folder() / "known_truth";
     CRAZE_NEEDS_DATA(data);
-#ifdef CRAZE_SANITIZED
-    GTEST_SKIP() << "takes minutes under sanitizers";
-#endif
+    CRAZE_NEEDS_SPEED;
     const auto stack = io::read_volume<std::uint8_t>(data / "stack.tif"),
                truth = io::read_volume<std::uint8_t>(data / "truth_matter_255.tif");
     const Shape shape{72, 72, 72};

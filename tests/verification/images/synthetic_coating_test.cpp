@@ -6,6 +6,7 @@
 #include "craze/microstructure/classification.hpp"
 #include "craze/microstructure/threshold.hpp"
 #include "craze/synth/synth.hpp"
+#include "support/speed.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -14,12 +15,6 @@
 
 namespace craze::images {
 namespace {
-
-#ifdef CRAZE_SANITIZED
-#define CRAZE_NEEDS_SPEED GTEST_SKIP() << "takes minutes under sanitizers, which smaller volumes pass through"
-#else
-#define CRAZE_NEEDS_SPEED static_cast<void>(0)
-#endif
 
 double share(std::int64_t a, std::int64_t b) { return static_cast<double>(a) / static_cast<double>(b); }
 
