@@ -32,6 +32,17 @@ const loading::Curve* triaxial_of(const loading::Response& response, const std::
     return nullptr;
 }
 
+/// K at a normalised density, between the points of a curve, Pa; at its last point where it ends before.
+double bulk_at(const loading::Curve& curve, double eta)
+{
+    const auto after = std::find_if(curve.points.begin(), curve.points.end(),
+                                    [&](const loading::Point& p) { return p.eta >= eta * (1.0 - 1e-9); });
+    if (after == curve.points.end()) return curve.points.back().bulk;
+    if (after == curve.points.begin()) return after->bulk;
+    const auto before = std::prev(after);
+    return std::lerp(before->bulk, after->bulk, (eta - before->eta) / (after->eta - before->eta));
+}
+
 void read_thickness(const domain::Discretisation& d, Numbers& numbers)
 {
     std::vector<double> T;
@@ -55,9 +66,10 @@ void read_response(const loading::Response& r, const Study& study, Numbers& numb
             numbers[fmt::format("ratio.{}", specimen)] = curve->points.front().bulk / K_D;
             if (std::string_view(specimen) != "both") continue;
             numbers["K.start"] = 1e-9 * curve->points.front().bulk;
-            numbers["K.end"] = 1e-9 * curve->points.back().bulk;
+            numbers["K.end"] = 1e-9 * bulk_at(*curve, eta_paper);
         }
-    if (const double T = equivalent_thickness(r, study.thicknesses); T > 0.0) numbers["T.equivalent"] = 1e9 * T;
+    for (const auto& [key, eta] : {std::pair{"T.equivalent", study.eta}, {"T.equivalent.short", eta_paper}})
+        if (const double T = equivalent_thickness(r, study.thicknesses, eta); T > 0.0) numbers[key] = 1e9 * T;
     for (const auto& s : r.strengths) {
         const auto GPa = std::lround(1e-9 * s.sigma_failure);
         numbers[fmt::format("{}.{}", s.tension ? "UTS" : "UCS", GPa)] = 1e-6 * s.strength;
@@ -108,6 +120,7 @@ loading::Settings laboratory(const Study& study, const loading::Calibration& cal
     s.output.last_state = false;
     s.triaxial.run = study.triaxial_points > 0;
     s.triaxial.points = std::max<std::int64_t>(1, study.triaxial_points);
+    s.triaxial.eta = study.eta;
     s.triaxial.specimens = study.specimens;
     std::erase(s.triaxial.specimens, "dense");
     if (study.closed)
@@ -235,6 +248,7 @@ Study narrowed(Study study, std::int64_t triaxial_points)
     study.moduli = study.closed = false;
     study.uniaxial_points = 0;
     study.triaxial_points = std::min(triaxial_points, study.triaxial_points);
+    study.eta = eta_paper;
     study.thicknesses.clear();
     study.cycles.clear();
     return study;
@@ -276,31 +290,33 @@ std::vector<Variant> by_bending_share(const synth::Settings& recipe, const Bench
     return out;
 }
 
-double equivalent_thickness(const loading::Response& response, const std::vector<double>& thicknesses)
+double equivalent_thickness(const loading::Response& response, std::vector<double> thicknesses, double eta)
 {
     const auto* open = triaxial_of(response, "cracks");
-    if (open == nullptr || thicknesses.size() < 3) return 0.0;
-    // Misfit of pressure at equal points; its parabola through the best thickness tried and its neighbours.
-    std::vector<std::pair<double, double>> misfit;
+    if (open == nullptr || thicknesses.size() < 2) return 0.0;
+    std::sort(thicknesses.begin(), thicknesses.end());
+    std::vector<const loading::Curve*> tried;
     for (const double T : thicknesses) {
-        const auto* curve = triaxial_of(response, constant_thickness(T));
-        if (curve == nullptr || curve->points.size() != open->points.size()) return 0.0;
-        double sum = 0.0;
-        for (std::size_t p = 0; p < open->points.size(); ++p)
-            sum += std::pow(curve->points[p].pressure - open->points[p].pressure, 2);
-        misfit.emplace_back(T, sum);
+        tried.push_back(triaxial_of(response, constant_thickness(T)));
+        if (tried.back() == nullptr || tried.back()->points.size() != open->points.size()) return 0.0;
     }
-    std::sort(misfit.begin(), misfit.end());
-    const auto best =
-        static_cast<std::size_t>(std::min_element(misfit.begin(), misfit.end(),
-                                                  [](const auto& a, const auto& b) { return a.second < b.second; }) -
-                                 misfit.begin());
-    if (best == 0 || best + 1 == misfit.size()) return misfit[best].first;
-    const auto [x0, y0] = misfit[best - 1];
-    const auto [x1, y1] = misfit[best];
-    const auto [x2, y2] = misfit[best + 1];
-    const double left = (y1 - y0) / (x1 - x0), right = (y2 - y1) / (x2 - x1), bend = (right - left) / (x2 - x0);
-    return std::clamp(0.5 * (x0 + x1) - 0.5 * left / bend, x0, x2);
+    // Between neighbours P is a straight line in T: its misfit is a parabola with a known vertex.
+    double best = 0.0, least = INFINITY;
+    for (std::size_t k = 0; k + 1 < tried.size(); ++k) {
+        double along = 0.0, square = 0.0;
+        const auto each = [&](auto&& use) {
+            for (std::size_t p = 0; p < open->points.size() && open->points[p].eta <= eta * (1.0 + 1e-9); ++p) {
+                const double from = tried[k]->points[p].pressure;
+                use(open->points[p].pressure - from, tried[k + 1]->points[p].pressure - from);
+            }
+        };
+        each([&](double wanted, double step) { along += wanted * step, square += step * step; });
+        const double share = square > 0.0 ? std::clamp(along / square, 0.0, 1.0) : 0.0;
+        double misfit = 0.0;
+        each([&](double wanted, double step) { misfit += std::pow(wanted - share * step, 2); });
+        if (misfit < least) least = misfit, best = std::lerp(thicknesses[k], thicknesses[k + 1], share);
+    }
+    return best;
 }
 
 }  // namespace craze::reproduce

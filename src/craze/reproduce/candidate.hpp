@@ -14,6 +14,9 @@ namespace craze::reproduce {
 /// Radii of the classification [2.4.3], m.
 constexpr double R_C = 8.5 * 23.6e-9, R_E = 4.5 * 23.6e-9;
 
+/// The normalised density up to which the paper reports K [4.2.2].
+constexpr double eta_paper = 0.015;
+
 /// The coating fitted to the paper's numbers: examples/coating.toml, docs/reproduction.md.
 synth::Settings recipe();
 
@@ -22,7 +25,8 @@ struct Study {
     std::vector<std::string> specimens{"dense", "pores", "cracks", "both"};
     bool moduli = true;                 ///< Table 3
     std::int64_t uniaxial_points = 0;   ///< points of each stress-strain curve; 0: none [Fig. 18]
-    std::int64_t triaxial_points = 15;  ///< points to eta = 1.5 %; 0: none [Fig. 21]
+    std::int64_t triaxial_points = 15;  ///< points to `eta`; 0: none [Fig. 21]
+    double eta = eta_paper;             ///< largest normalised density of the triaxial curves
     bool closed = false;                ///< dense and closed cracks under triaxial compression too [Fig. 21]
     std::vector<double> thicknesses;    ///< constant thicknesses, cracks only, m [Fig. 22]
     std::vector<double> strengths;      ///< sigma_failure, Pa, along x [Table 4]
@@ -91,8 +95,10 @@ std::vector<Variant> by_opening(const synth::Settings& recipe, const Bench& benc
 std::vector<Variant> by_bending_share(const synth::Settings& recipe, const Bench& bench, const Study& study,
                                       const std::vector<double>& shares, const Keep& keep = {});
 
-/// The constant thickness whose P(eta) is nearest to the T2 curve of the cracks-only specimen, m: least squares,
-/// interpolated between the thicknesses tried. 0 where the response has no such curves. [4.2.3]
-double equivalent_thickness(const loading::Response& response, const std::vector<double>& thicknesses);
+/// The constant thickness whose P(eta) is nearest to the T2 curve of the cracks-only specimen up to a density, m: least
+/// squares, P taken as linear between the thicknesses tried. 0 where the response has no such curves. [4.2.3]
+/// Our reading: the paper does not say up to which density it compares; the thickness grows with it, because T2's thin
+/// openings close first and its wide ones last.
+double equivalent_thickness(const loading::Response& response, std::vector<double> thicknesses, double eta);
 
 }  // namespace craze::reproduce

@@ -60,14 +60,15 @@ Figure stress_strain(const std::vector<Curve>& curves)
     return f;
 }
 
-/// Triaxial curves: specimens chosen by `wanted`, one quantity over eta.
+/// Triaxial curves: specimens chosen by `wanted`, one quantity over eta up to its largest value.
 template <class Wanted, class Value>
-Figure triaxial(const std::vector<Curve>& curves, Wanted&& wanted, Value&& value)
+Figure triaxial(const std::vector<Curve>& curves, double eta, Wanted&& wanted, Value&& value)
 {
     Figure f;
     f.x.title = "eta [%]";
-    for (const auto& c : curves)
+    for (Curve c : curves)
         if (c.loading.kind == Kind::triaxial && wanted(c.loading.specimen)) {
+            std::erase_if(c.points, [&](const Point& p) { return p.eta > eta * (1.0 + 1e-9); });
             const bool closed = c.loading.specimen.thickness == domain::Defects::Thickness::closed;
             f.series.push_back(series(
                 loading::specimen_name(c.loading.specimen), c, [](const Point& p) { return 100.0 * p.eta; }, value,
@@ -88,7 +89,7 @@ void add_triaxial(const std::vector<Curve>& curves, std::vector<Figure>& out)
                                    {"closure", "gamma [%]", "c", [](const Point& p) { return 100.0 * p.closure; }}};
     for (const auto& q : quantities) {
         auto defects = triaxial(
-            curves, [&](const auto& d) { return !constant(d); }, q.value);
+            curves, eta_paper, [&](const auto& d) { return !constant(d); }, q.value);
         defects.id = fmt::format("fig21_{}", q.id);
         defects.paper = fmt::format("Fig. 21{}", q.part);
         defects.y.title = q.title;
@@ -99,7 +100,7 @@ void add_triaxial(const std::vector<Curve>& curves, std::vector<Figure>& out)
         }
         out.push_back(std::move(defects));
         auto thickness = triaxial(
-            curves,
+            curves, INFINITY,
             [&](const auto& d) {
                 return !d.pores && (!d.cracks || constant(d) || d.thickness == domain::Defects::Thickness::T2);
             },

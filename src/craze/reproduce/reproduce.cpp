@@ -25,6 +25,7 @@ Study study_of(const Settings& s)
     Study study;
     study.uniaxial_points = s.uniaxial_points;
     study.triaxial_points = s.triaxial_points;
+    study.eta = s.eta;
     study.closed = true;
     study.thicknesses = s.thicknesses;
     study.strengths = s.strengths;
@@ -106,6 +107,7 @@ void describe(Schema& schema, Settings& s)
     schema.flag("calibrate", s.calibrate, "beams for each packing; else those of Table 2");
     schema.integer("uniaxial_points", s.uniaxial_points, {0, 500}, "points of the stress-strain curves; 0: none");
     schema.integer("triaxial_points", s.triaxial_points, {3, 500}, "points of the triaxial curves");
+    schema.quantity("eta", s.eta, Dimension::fraction, {1e-3, 0.1}, "largest normalised density of these");
     schema.quantities("thicknesses", s.thicknesses, Dimension::length, {0, 1e-6},
                       "constant crack thicknesses of Fig. 22");
     schema.quantities("strengths", s.strengths, Dimension::pressure, {1e6, 1e13},

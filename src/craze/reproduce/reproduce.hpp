@@ -25,10 +25,12 @@ struct Settings {
     std::int64_t search = 21;           ///< window of non-local means, px; smaller is faster [2.3 (3)]
     bool calibrate = true;              ///< beams for each packing; else Table 2's
     std::int64_t uniaxial_points = 8;   ///< 0: none [Fig. 18]
-    std::int64_t triaxial_points = 15;  ///< [Fig. 21]
-    std::vector<double> thicknesses{2e-9, 10e-9, 20e-9, 40e-9, 60e-9, 100e-9};  ///< constant, cracks only [Fig. 22]
-    std::vector<double> strengths{10e9, 20e9, 30e9, 40e9, 50e9};                ///< sigma_failure, Pa [Table 4]
-    double tension = 1.5e-3, compression = 4.5e-3;                              ///< see Study
+    std::int64_t triaxial_points = 30;  ///< [Figs. 21, 22]
+    double eta = 3.0 * eta_paper;       ///< largest normalised density of the triaxial curves; Fig. 21 shows eta_paper
+    std::vector<double> thicknesses{2e-9,  10e-9, 20e-9, 30e-9,
+                                    40e-9, 60e-9, 100e-9};        ///< constant, cracks only [Fig. 22]
+    std::vector<double> strengths{10e9, 20e9, 30e9, 40e9, 50e9};  ///< sigma_failure, Pa [Table 4]
+    double tension = 1.5e-3, compression = 4.5e-3;                ///< see Study
     double crossings = 40.0;  ///< of a fracture loading: wave crossings per strain of sigma_failure / E_B
     double damping = 0.0;     ///< mass damping beside the local one
     std::vector<double> cycles{-1e-3, -2e-3, -3e-3};          ///< peaks of strain, first seed only [Fig. 25]

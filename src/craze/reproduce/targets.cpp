@@ -41,7 +41,8 @@ std::vector<Target> all()
     t.push_back({"ratio.both", "4.2.2", "K(0)/K_D, both", "", 0.29, 0.10});
     t.push_back({"K.start", "Fig. 21b", "K at eta = 0, both", "GPa", 52, 0.10});
     t.push_back({"K.end", "Fig. 21b", "K at eta = 1.5 %, both", "GPa", 70, 0.10});
-    t.push_back({"T.equivalent", "4.2.3", "constant thickness that fits T2", "nm", 40, 0.25});
+    t.push_back({"T.equivalent", "4.2.3", "constant thickness that fits T2, whole curve", "nm", 40, 0.25});
+    t.push_back({"T.equivalent.short", "4.2.3", "constant thickness that fits T2, eta to 1.5 %", "nm", 40, 0.25});
     const double uts[] = {61, 120, 179, 243, 308}, ucs[] = {171, 345, 540, 753, 1002};
     for (int k = 0; k < 5; ++k) {
         t.push_back({fmt::format("UTS.{}", 10 * (k + 1)), "Table 4", fmt::format("UTS at {} GPa", 10 * (k + 1)), "MPa",

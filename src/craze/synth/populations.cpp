@@ -23,6 +23,12 @@ Vec3 direction(Random& random)
     }
 }
 
+/// A normal about an axis: large scatter makes it isotropic.
+Vec3 scattered(const Vec3& axis, double scatter, Random& random)
+{
+    return normalized(axis + scatter * Vec3{random.normal(), random.normal(), random.normal()});
+}
+
 /// A point of the box widened by `margin` on every side, so that bodies cut by its faces are as frequent as inside.
 Vec3 anywhere(const Vec3& size, double margin, Random& random)
 {
@@ -58,17 +64,22 @@ Pore shaped(const PorePopulation& p, Random& random)
                               {unit, unit * middle, unit * p.flatness}});
         return pore;
     }
-    // Splats lie across z: the lobes are flat along z within some degrees, and spread sideways.
+    // Splats lie across z, and so do the gaps between them unless scattered: the lobes are flat along the pore's normal
+    // within some degrees, and spread sideways.
+    Frame splat;
+    if (p.scatter > 0.0) splat = frame_about(scattered({0.0, 0.0, 1.0}, p.scatter, random), 0.0);
+    const auto in_splat = [&](const Vec3& v) { return v.x * splat.u + v.y * splat.v + v.z * splat.n; };
     Vec3 at{};
     for (std::int64_t l = 0; l < p.lobes; ++l) {
         const double scale = l == 0 ? 1.0 : random.uniform(0.55, 0.95);
-        const Vec3 normal = normalized(Vec3{0.25 * random.normal(), 0.25 * random.normal(), 1.0});
+        const Vec3 normal = in_splat(normalized(Vec3{0.25 * random.normal(), 0.25 * random.normal(), 1.0}));
         pore.lobes.push_back({at,
                               frame_about(normal, random.uniform(0.0, 2.0 * pi)),
                               {wide * scale, wide * scale * random.uniform(0.7, 1.0), wide * p.flatness * scale}});
         const double angle = random.uniform(0.0, 2.0 * pi), step = wide * random.uniform(0.5, 0.9);
         const Vec3& from = pore.lobes[static_cast<std::size_t>(random.below(l + 1))].centre;
-        at = from + Vec3{step * std::cos(angle), step * std::sin(angle), 0.35 * p.flatness * wide * random.normal()};
+        at = from +
+             in_splat({step * std::cos(angle), step * std::sin(angle), 0.35 * p.flatness * wide * random.normal()});
     }
     return pore;
 }
@@ -175,8 +186,7 @@ Crack shaped(const CrackPopulation& c, Random& random)
     const double pick = random.uniform() * (c.normals[0] + c.normals[1] + c.normals[2]);
     Vec3 axis{};
     axis[pick < c.normals[0] ? 0 : pick < c.normals[0] + c.normals[1] ? 1 : 2] = 1.0;
-    const Vec3 turned = axis + c.scatter * Vec3{random.normal(), random.normal(), random.normal()};
-    crack.frame = frame_about(normalized(turned), random.uniform(0.0, 2.0 * pi));
+    crack.frame = frame_about(scattered(axis, c.scatter, random), random.uniform(0.0, 2.0 * pi));
     crack.aperture = draw(c.aperture, random) * std::pow(radius / c.radius.median, c.aperture_growth);
     crack.aperture = std::clamp(crack.aperture, c.aperture.least, c.aperture.most);
     crack.profile = c.profile;

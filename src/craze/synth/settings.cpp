@@ -56,6 +56,8 @@ void describe(Schema& schema, PorePopulation& p)
     describe(schema, "radius", p.radius, "radius of the ball of the same volume; of the main lobe if irregular");
     schema.number("flatness", p.flatness, {0.05, 1}, "shortest over longest semi-axis");
     schema.integer("lobes", p.lobes, {2, 50}, "lobes of an irregular pore");
+    schema.number("scatter", p.scatter, {0, 100},
+                  "irregular pores: spread of their normals about z; above 10 nearly isotropic");
     schema.quantity("porosity", p.porosity, Dimension::fraction, {0, 0.5},
                     "share of the volume; 0 when count is given");
     schema.integer("count", p.count, {0, 1e6}, "number of pores; 0 when porosity is given");

@@ -31,6 +31,7 @@ struct PorePopulation {
     Length radius{0.6e-6, 0.3, 0.25e-6, 2e-6};  ///< of the ball of the same volume (of the main lobe when irregular)
     double flatness = 1.0;                      ///< shortest over longest semi-axis, (0, 1]
     std::int64_t lobes = 4;                     ///< of an irregular pore
+    double scatter = 0.0;                       ///< of an irregular pore's normal about z, as of cracks below
     double porosity = 0.0;                      ///< share of the volume; sizes are scaled a little to meet it exactly
     std::int64_t count = 0;                     ///< instead: number centred in the box
     double gap = 0.1e-6;           ///< least distance to pores placed before, m; negative lets them overlap

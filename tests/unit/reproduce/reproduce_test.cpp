@@ -62,8 +62,23 @@ TEST(EquivalentThickness, IsFoundBetweenThoseTried)
     r.curves.push_back(curve("cracks", 43e-9));
     const std::vector<double> tried{20e-9, 30e-9, 40e-9, 60e-9};
     for (const double T : tried) r.curves.push_back(curve("cracks " + std::to_string(std::lround(T * 1e9)) + " nm", T));
-    EXPECT_NEAR(equivalent_thickness(r, tried), 43e-9, 0.1e-9);
-    EXPECT_EQ(equivalent_thickness(r, {}), 0.0);
+    EXPECT_NEAR(equivalent_thickness(r, tried, 1.0), 43e-9, 0.1e-9);
+    EXPECT_EQ(equivalent_thickness(r, {}, 1.0), 0.0);
+}
+
+TEST(EquivalentThickness, LooksAtTheCurveUpToTheDensityAskedFor)
+{
+    loading::Response r;
+    auto open = curve("cracks", 25e-9);
+    const auto later = curve("cracks", 50e-9);
+    for (std::size_t p = 5; p < open.points.size(); ++p) open.points[p].pressure = later.points[p].pressure;
+    r.curves.push_back(open);
+    const std::vector<double> tried{60e-9, 20e-9, 40e-9};
+    for (const double T : tried) r.curves.push_back(curve("cracks " + std::to_string(std::lround(T * 1e9)) + " nm", T));
+    EXPECT_NEAR(equivalent_thickness(r, tried, 0.0015 * 4), 25e-9, 0.1e-9);
+    const double whole = equivalent_thickness(r, tried, 1.0);
+    EXPECT_GT(whole, 40e-9);
+    EXPECT_LT(whole, 50e-9);
 }
 
 TEST(Parameters, SetWhatTheyGetAndNothingElse)
