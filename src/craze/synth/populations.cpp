@@ -186,7 +186,8 @@ Crack shaped(const CrackPopulation& c, Random& random)
     const double pick = random.uniform() * (c.normals[0] + c.normals[1] + c.normals[2]);
     Vec3 axis{};
     axis[pick < c.normals[0] ? 0 : pick < c.normals[0] + c.normals[1] ? 1 : 2] = 1.0;
-    crack.frame = frame_about(scattered(axis, c.scatter, random), random.uniform(0.0, 2.0 * pi));
+    const Vec3 normal = scattered(axis, c.scatter, random);
+    crack.frame = frame_about(normal, random.uniform(0.0, 2.0 * pi));
     crack.aperture = draw(c.aperture, random) * std::pow(radius / c.radius.median, c.aperture_growth);
     crack.aperture = std::clamp(crack.aperture, c.aperture.least, c.aperture.most);
     crack.profile = c.profile;
