@@ -70,6 +70,13 @@ const std::vector<Parameter>& parameters()
     return list;
 }
 
+std::vector<std::string> fitted_numbers()
+{
+    auto keys = FitSettings{}.targets;
+    keys.emplace_back("E.pores.z");
+    return keys;
+}
+
 void describe(Schema& schema, FitSettings& s)
 {
     std::string known;

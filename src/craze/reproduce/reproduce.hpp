@@ -33,12 +33,12 @@ struct Settings {
     double tension = 1.5e-3, compression = 4.5e-3;                ///< see Study
     double crossings = 40.0;  ///< of a fracture loading: wave crossings per strain of sigma_failure / E_B
     double damping = 0.0;     ///< mass damping beside the local one
-    std::vector<double> cycles{-1e-3, -2e-3, -3e-3};          ///< peaks of strain, first seed only [Fig. 25]
-    double bending_share = 1.0;                               ///< see Study
-    std::vector<double> openings;                             ///< factors for by_opening, first seed; none: not run
-    std::vector<double> bending_shares;                       ///< for by_bending_share, first seed; none: not run
-    bool near_contacts = false;                               ///< see Study
-    std::vector<std::string> fitted = FitSettings{}.targets;  ///< which numbers the recipe was fitted to
+    std::vector<double> cycles{-1e-3, -2e-3, -3e-3};     ///< peaks of strain, first seed only [Fig. 25]
+    double bending_share = 1.0;                          ///< see Study
+    std::vector<double> openings;                        ///< factors for by_opening, first seed; none: not run
+    std::vector<double> bending_shares;                  ///< for by_bending_share, first seed; none: not run
+    bool near_contacts = false;                          ///< see Study
+    std::vector<std::string> fitted = fitted_numbers();  ///< which numbers the recipe was fitted to
 };
 void describe(Schema& schema, Settings& settings);
 /// @throws InvalidInput  naming the key
