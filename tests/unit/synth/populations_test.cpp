@@ -206,5 +206,37 @@ TEST(PorePopulation, GathersInClustersAndMayOverlap)
     EXPECT_LT(together, 2.0 * 0.3 * um) << "with a gap below zero they overlap";
 }
 
+TEST(PorePopulation, OfIrregularOnesLiesAcrossZUnlessScattered)
+{
+    Settings s;
+    s.shape = {120, 120, 120};
+    s.voxel_size = 0.1 * um;
+    s.cracks.clear();
+    s.pores = {{.shape = PoreShape::irregular,
+                .radius = {0.3 * um, 0.0, 0.1 * um, 1 * um},
+                .flatness = 0.5,
+                .count = 400,
+                .gap = -1.0}};
+    // Shares of the direction z in the lobes' normals and in the steps from lobe to lobe, mean squares.
+    const auto along_z = [](const Coating& coating) {
+        double normals = 0.0, steps = 0.0;
+        for (const auto& pore : coating.pores)
+            for (std::size_t l = 1; l < pore.lobes.size(); ++l) {
+                const Vec3 step = pore.lobes[l].centre - pore.lobes[0].centre;
+                normals += pore.lobes[l].frame.n.z * pore.lobes[l].frame.n.z;
+                steps += step.z * step.z / dot(step, step);
+            }
+        const auto count = 3.0 * static_cast<double>(coating.pores.size());
+        return std::pair{normals / count, steps / count};
+    };
+    const auto flat = along_z(make_coating(s));
+    EXPECT_GT(flat.first, 0.85);
+    EXPECT_LT(flat.second, 0.15);
+    s.pores[0].scatter = 100.0;
+    const auto any = along_z(make_coating(s));
+    EXPECT_NEAR(any.first, 1.0 / 3.0, 0.06);
+    EXPECT_NEAR(any.second, 1.0 / 3.0, 0.06);
+}
+
 }  // namespace
 }  // namespace craze::synth
