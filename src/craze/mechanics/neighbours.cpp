@@ -46,6 +46,19 @@ void Pairs::add(const Pairs& from, std::size_t p)
     cut.push_back(from.cut[p]);
 }
 
+/// Two sorted lists in one.
+static Pairs merged(const Pairs& a, const Pairs& b)
+{
+    Pairs out;
+    std::size_t p = 0, q = 0;
+    while (p < a.i.size() || q < b.i.size()) {
+        const bool first =
+            q == b.i.size() || (p < a.i.size() && (a.i[p] < b.i[q] || (a.i[p] == b.i[q] && a.j[p] < b.j[q])));
+        first ? out.add(a, p++) : out.add(b, q++);
+    }
+    return out;
+}
+
 Neighbours::Neighbours(const Lattice& lattice, Geometry geometry, std::vector<PressedPair> pressed)
     : lattice_(lattice),
       holding_(lattice),
@@ -63,35 +76,49 @@ bool Neighbours::follow(std::span<const double> pose, std::span<const domain::Bo
     if (until_search_ < 0.0) {
         search(pose);
         lower_limits();
+        list_parted(kind);
         until_search_ = reach_;
     }
     skin_ = std::clamp(20.0 * moved, 0.03 * lattice_.mean_radius, reach_);
-    choose(pose, kind);
+    choose(pose);
     until_choice_ = skin_;
     return true;
 }
 
-void Neighbours::part(std::span<const double> pose, std::span<const domain::BondKind> kind)
+bool Neighbours::part(std::span<const double> pose, std::span<const domain::BondKind> kind,
+                      std::span<const std::int32_t> ends)
 {
-    const Pairs before = std::move(active_);
-    choose(pose, kind);
-    until_choice_ = std::min(until_choice_, skin_);
-    const auto old = pressed_.size();
-    std::size_t q = 0;  // both lists are sorted by (i, j)
-    for (std::size_t p = 0; p < active_.i.size(); ++p) {
-        const auto behind = [&] {
-            return before.i[q] < active_.i[p] || (before.i[q] == active_.i[p] && before.j[q] < active_.j[p]);
-        };
-        while (q < before.i.size() && behind()) ++q;
-        if (q < before.i.size() && before.i[q] == active_.i[p] && before.j[q] == active_.j[p]) continue;
-        const double distance = apart(active_, p, geometry_, pose.data()).d;
-        if (distance >= active_.limit[p]) continue;
-        active_.limit[p] = distance;
-        pressed_.push_back({active_.i[p], active_.j[p], distance});
+    std::vector<std::int32_t> fresh;
+    for (const std::int32_t e : ends)
+        for (auto at = first_near_[static_cast<std::size_t>(e)]; at < first_near_[static_cast<std::size_t>(e) + 1];
+             ++at) {
+            const std::int32_t k = near_of_[static_cast<std::size_t>(at)];
+            const auto p = static_cast<std::size_t>(k);
+            if (parted_[p] != 0 || !holding_.parted(near_.i[p], near_.j[p], near_.cut[p] != 0, kind)) continue;
+            parted_[p] = 1;
+            fresh.push_back(k);
+        }
+    if (fresh.empty()) return false;
+    std::sort(fresh.begin(), fresh.end());
+    const auto middle = loose_.insert(loose_.end(), fresh.begin(), fresh.end());
+    std::inplace_merge(loose_.begin(), middle, loose_.end());
+
+    Pairs touching;
+    bool pressed = false;
+    for (const std::int32_t k : fresh) {
+        const auto p = static_cast<std::size_t>(k);
+        const double distance = apart(near_, p, geometry_, pose.data()).d;
+        if (distance < near_.limit[p]) {
+            near_.limit[p] = distance;
+            pressed_.push_back({near_.i[p], near_.j[p], distance});
+            pressed = true;
+        }
+        if (distance < near_.limit[p] + skin_) touching.add(near_, p);
     }
-    if (pressed_.size() == old) return;
-    std::sort(pressed_.begin(), pressed_.end(), by_ends);
-    lower_limits();
+    if (pressed) std::sort(pressed_.begin(), pressed_.end(), by_ends);
+    if (touching.i.empty()) return false;
+    active_ = merged(active_, touching);
+    return true;
 }
 
 /// Contact distances of near pairs that were pressed together when they parted.
@@ -202,14 +229,42 @@ void Neighbours::search(std::span<const double> pose)
         for (std::size_t p = 0; p < part.i.size(); ++p) near_.add(part, p);
 }
 
-/// The near pairs whose gap is less than the skin and that have parted.
-void Neighbours::choose(std::span<const double> pose, std::span<const domain::BondKind> kind)
+/// Which near pairs have parted, and the near pairs of each element.
+void Neighbours::list_parted(std::span<const domain::BondKind> kind)
 {
+    parted_.assign(near_.i.size(), 0);
+    parallel_ranges(near_.size(), [&](std::int64_t begin, std::int64_t end) {
+        for (auto p = static_cast<std::size_t>(begin); p < static_cast<std::size_t>(end); ++p)
+            parted_[p] = holding_.parted(near_.i[p], near_.j[p], near_.cut[p] != 0, kind) ? 1 : 0;
+    });
+    loose_.clear();
+    first_near_.assign(lattice_.r.size() + 1, 0);
+    for (std::size_t p = 0; p < parted_.size(); ++p) {
+        ++first_near_[static_cast<std::size_t>(near_.i[p]) + 1],
+            ++first_near_[static_cast<std::size_t>(near_.j[p]) + 1];
+        if (parted_[p] != 0) loose_.push_back(static_cast<std::int32_t>(p));
+    }
+    for (std::size_t e = 1; e < first_near_.size(); ++e) first_near_[e] += first_near_[e - 1];
+    std::vector<std::int32_t> fill(first_near_.begin(), first_near_.end() - 1);
+    near_of_.resize(2 * near_.i.size());
+    for (std::size_t p = 0; p < parted_.size(); ++p)
+        for (const std::int32_t e : {near_.i[p], near_.j[p]})
+            near_of_[static_cast<std::size_t>(fill[static_cast<std::size_t>(e)]++)] = static_cast<std::int32_t>(p);
+}
+
+/// The pairs that have parted and whose gap is less than the skin.
+void Neighbours::choose(std::span<const double> pose)
+{
+    std::vector<std::uint8_t> close(loose_.size(), 0);
+    parallel_ranges(std::ssize(loose_), [&](std::int64_t begin, std::int64_t end) {
+        for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
+            const auto p = static_cast<std::size_t>(loose_[k]);
+            close[k] = apart(near_, p, geometry_, pose.data()).d < near_.limit[p] + skin_ ? 1 : 0;
+        }
+    });
     active_ = {};
-    for (std::size_t p = 0; p < near_.i.size(); ++p)
-        if (apart(near_, p, geometry_, pose.data()).d < near_.limit[p] + skin_ &&
-            holding_.parted(near_.i[p], near_.j[p], near_.cut[p] != 0, kind))
-            active_.add(near_, p);
+    for (std::size_t k = 0; k < loose_.size(); ++k)
+        if (close[k] != 0) active_.add(near_, static_cast<std::size_t>(loose_[k]));
 }
 
 double add_pairs(const Pairs& pairs, std::int64_t begin, std::int64_t end, double stiffness, Geometry geometry,

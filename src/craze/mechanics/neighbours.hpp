@@ -39,7 +39,9 @@ public:
     bool follow(std::span<const double> pose, std::span<const domain::BondKind> kind, double moved);
     /// Beams have broken: pairs that were held become active. Those that overlap start at zero force: their distance
     /// now becomes their contact distance, so that no energy comes from nowhere.
-    void part(std::span<const double> pose, std::span<const domain::BondKind> kind);
+    /// @param ends  elements that have lost a beam since the last call, in any order
+    /// @return whether the active pairs have changed
+    bool part(std::span<const double> pose, std::span<const domain::BondKind> kind, std::span<const std::int32_t> ends);
     /// Sorted by (i, j).
     const std::vector<PressedPair>& pressed() const { return pressed_; }
     const Pairs& active() const { return active_; }
@@ -47,7 +49,8 @@ public:
 
 private:
     void search(std::span<const double> pose);
-    void choose(std::span<const double> pose, std::span<const domain::BondKind> kind);
+    void list_parted(std::span<const domain::BondKind> kind);
+    void choose(std::span<const double> pose);
     void lower_limits();
 
     const Lattice& lattice_;
@@ -56,6 +59,10 @@ private:
     double reach_, skin_;                               ///< m
     double until_search_ = -1.0, until_choice_ = -1.0;  ///< m of approach left
     Pairs near_, active_;
+    std::vector<std::int32_t> first_near_,
+        near_of_;                       ///< near pairs of e are near_of_[first_near_[e], first_near_[e + 1])
+    std::vector<std::uint8_t> parted_;  ///< of each near pair
+    std::vector<std::int32_t> loose_;   ///< near pairs that have parted, ascending
     std::vector<PressedPair> pressed_;
     std::int64_t searches_ = 0;
 };
