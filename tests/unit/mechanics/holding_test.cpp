@@ -67,6 +67,45 @@ TEST(Neighbours, PressedTogetherWhenTheyPartStartAtZeroForce)
     }
 }
 
+TEST(NearPairs, AreThoseOfBruteForce)
+{
+    const Lattice lattice = make_lattice(support::small_packing(300, 3), {});
+    const std::int32_t n = lattice.elements();
+    std::vector<double> pose(8 * lattice.r.size(), 0.0);
+    Random random(2);
+    for (std::size_t k = 0; k < pose.size(); ++k)
+        if (k % 8 < 3) pose[k] = lattice.mean_radius * random.uniform(-0.5, 0.5);
+    pose[0] += 50.0 * lattice.mean_radius;  // a fragment far away
+    const double reach = 0.3 * lattice.mean_radius;
+    const Pairs got = near_pairs(lattice, Geometry::corotational, pose, reach);
+    std::size_t p = 0, strangers = 0;
+    const auto at = [&](std::int32_t e) {
+        const double* u = pose.data() + 8 * std::int64_t{e};
+        return lattice.centre(e) + Vec3{u[0], u[1], u[2]};
+    };
+    const auto among = [](const auto& is, const auto& js, std::int32_t i, std::int32_t j) {
+        for (std::size_t k = 0; k < is.size(); ++k)
+            if (is[k] == i && js[k] == j) return true;
+        return false;
+    };
+    for (std::int32_t i = 0; i < n; ++i)
+        for (std::int32_t j = i + 1; j < n; ++j) {
+            const double touch =
+                lattice.r[static_cast<std::size_t>(i)] + lattice.r[static_cast<std::size_t>(j)] + reach;
+            const bool listed = among(lattice.free.i, lattice.free.j, i, j);
+            if (norm(at(j) - at(i)) >= touch || among(lattice.i, lattice.j, i, j)) continue;
+            if (!listed && norm(lattice.centre(j) - lattice.centre(i)) < touch) continue;
+            ASSERT_LT(p, got.i.size());
+            EXPECT_EQ(got.i[p], i);
+            EXPECT_EQ(got.j[p], j);
+            EXPECT_EQ(got.cut[p], listed ? 0 : 1);
+            ++p, strangers += !listed;
+        }
+    EXPECT_EQ(p, got.i.size());
+    EXPECT_GT(strangers, 10U);
+    EXPECT_GT(p - strangers, 10U);
+}
+
 // Step by step, or all looked at anew: the same contacts and the same bits.
 TEST(Neighbours, WhatPartsIsWhatASearchFromNothingFinds)
 {
