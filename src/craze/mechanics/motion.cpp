@@ -271,7 +271,7 @@ void Motion::Work::pass(bool measuring)
 /// of the step and what is left of it for the second: what it held less that work is set free.
 void Motion::Work::break_beams()
 {
-    bool any = false;
+    std::vector<std::int32_t> ends;
     for (const Share& share : shares)
         for (const std::int32_t b : share.broken) {
             const auto k = static_cast<std::size_t>(b);
@@ -284,15 +284,13 @@ void Motion::Work::break_beams()
             now.kind[k] = domain::BondKind::contact_beam;
             bonds.slack[k] = 0.0;
             now.broken.push_back({b, now.step});
-            any = true;
+            ends.push_back(bonds.i[k]), ends.push_back(bonds.j[k]);
         }
-    if (!any) return;
+    if (ends.empty()) return;
     for (Share& share : shares)
         for (std::size_t k = 0; k < share.border.size(); ++k)
             share.border_bonds.slack[k] = bonds.slack[static_cast<std::size_t>(share.border[k])];
-    if (!options.free_contacts) return;
-    neighbours.part(pose_next, now.kind);
-    share_pairs();
+    if (options.free_contacts && neighbours.part(pose_next, now.kind, ends)) share_pairs();
 }
 
 void Motion::Work::step()

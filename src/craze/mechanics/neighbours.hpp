@@ -5,24 +5,13 @@
 #include "craze/mechanics/holding.hpp"
 #include "craze/mechanics/lattice.hpp"
 #include "craze/mechanics/motion.hpp"
+#include "craze/mechanics/near_pairs.hpp"
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace craze::mechanics {
-
-/// Unbonded pairs, structure of arrays, i < j, sorted by (i, j).
-struct Pairs {
-    std::vector<std::int32_t> i, j;
-    std::vector<double> dx, dy, dz;  ///< from centre i to centre j at rest, m
-    std::vector<double> distance;    ///< |d|, m
-    std::vector<double> limit;       ///< contact distance, m
-    std::vector<std::uint8_t> cut;   ///< 1: a crack runs between them, or they were no neighbours at rest
-
-    std::int64_t size() const { return std::ssize(i); }
-    void add(const Pairs& from, std::size_t p);
-};
 
 /// Keeps the pairs that may touch: all near ones, searched anew when elements have moved far, and of these the few
 /// whose gap is small, chosen anew when elements have moved a little. In small displacements the pairs are the
@@ -39,15 +28,16 @@ public:
     bool follow(std::span<const double> pose, std::span<const domain::BondKind> kind, double moved);
     /// Beams have broken: pairs that were held become active. Those that overlap start at zero force: their distance
     /// now becomes their contact distance, so that no energy comes from nowhere.
-    void part(std::span<const double> pose, std::span<const domain::BondKind> kind);
+    /// @param ends  elements that have lost a beam since the last call, in any order
+    /// @return whether the active pairs have changed
+    bool part(std::span<const double> pose, std::span<const domain::BondKind> kind, std::span<const std::int32_t> ends);
     /// Sorted by (i, j).
     const std::vector<PressedPair>& pressed() const { return pressed_; }
     const Pairs& active() const { return active_; }
-    std::int64_t searches() const { return searches_; }
 
 private:
-    void search(std::span<const double> pose);
-    void choose(std::span<const double> pose, std::span<const domain::BondKind> kind);
+    void list_parted(std::span<const domain::BondKind> kind);
+    void choose(std::span<const double> pose);
     void lower_limits();
 
     const Lattice& lattice_;
@@ -56,8 +46,11 @@ private:
     double reach_, skin_;                               ///< m
     double until_search_ = -1.0, until_choice_ = -1.0;  ///< m of approach left
     Pairs near_, active_;
+    std::vector<std::int32_t> first_near_,
+        near_of_;                       ///< near pairs of e are near_of_[first_near_[e], first_near_[e + 1])
+    std::vector<std::uint8_t> parted_;  ///< of each near pair
+    std::vector<std::int32_t> loose_;   ///< near pairs that have parted, ascending
     std::vector<PressedPair> pressed_;
-    std::int64_t searches_ = 0;
 };
 
 /// Pushes of the pairs in [begin, end) on rows of i, and of j below the limit. Gives their energy, J.

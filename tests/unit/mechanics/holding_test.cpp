@@ -1,11 +1,13 @@
 #include "craze/mechanics/holding.hpp"
 
+#include "craze/core/random.hpp"
 #include "craze/mechanics/contacts.hpp"
 #include "craze/mechanics/neighbours.hpp"
 #include "support/packings.hpp"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 
 namespace craze::mechanics {
@@ -50,7 +52,7 @@ TEST(Neighbours, PressedTogetherWhenTheyPartStartAtZeroForce)
         neighbours.follow(pose, lattice.kind, 0.0);
         EXPECT_EQ(neighbours.active().size(), 0) << "held";
         kind[1] = BondKind::contact_beam;
-        neighbours.part(pose, kind);
+        EXPECT_TRUE(neighbours.part(pose, kind, std::vector<std::int32_t>{1, 2}));
         ASSERT_EQ(neighbours.active().size(), 1);
         EXPECT_NEAR(neighbours.active().limit[0], 1.9, 1e-14);
         EXPECT_EQ(add_pairs(neighbours.active(), 0, 1, 7.0, geometry, 3, pose.data(), force.data()), 0.0);
@@ -62,6 +64,86 @@ TEST(Neighbours, PressedTogetherWhenTheyPartStartAtZeroForce)
         later.follow(nearer, kind, 0.0);
         EXPECT_NEAR(add_pairs(later.active(), 0, 1, 7.0, geometry, 3, nearer.data(), force.data()), 0.5 * 7.0 * 0.0025,
                     1e-13);
+    }
+}
+
+TEST(NearPairs, AreThoseOfBruteForce)
+{
+    const Lattice lattice = make_lattice(support::small_packing(300, 3), {});
+    const std::int32_t n = lattice.elements();
+    std::vector<double> pose(8 * lattice.r.size(), 0.0);
+    Random random(2);
+    for (std::size_t k = 0; k < pose.size(); ++k)
+        if (k % 8 < 3) pose[k] = lattice.mean_radius * random.uniform(-0.5, 0.5);
+    pose[0] += 50.0 * lattice.mean_radius;  // a fragment far away
+    const double reach = 0.3 * lattice.mean_radius;
+    const Pairs got = near_pairs(lattice, Geometry::corotational, pose, reach);
+    std::size_t p = 0, strangers = 0;
+    const auto at = [&](std::int32_t e) {
+        const double* u = pose.data() + 8 * std::int64_t{e};
+        return lattice.centre(e) + Vec3{u[0], u[1], u[2]};
+    };
+    const auto among = [](const auto& is, const auto& js, std::int32_t i, std::int32_t j) {
+        for (std::size_t k = 0; k < is.size(); ++k)
+            if (is[k] == i && js[k] == j) return true;
+        return false;
+    };
+    for (std::int32_t i = 0; i < n; ++i)
+        for (std::int32_t j = i + 1; j < n; ++j) {
+            const double touch =
+                lattice.r[static_cast<std::size_t>(i)] + lattice.r[static_cast<std::size_t>(j)] + reach;
+            const bool listed = among(lattice.free.i, lattice.free.j, i, j);
+            if (norm(at(j) - at(i)) >= touch || among(lattice.i, lattice.j, i, j)) continue;
+            if (!listed && norm(lattice.centre(j) - lattice.centre(i)) < touch) continue;
+            ASSERT_LT(p, got.i.size());
+            EXPECT_EQ(got.i[p], i);
+            EXPECT_EQ(got.j[p], j);
+            EXPECT_EQ(got.cut[p], listed ? 0 : 1);
+            ++p, strangers += !listed;
+        }
+    EXPECT_EQ(p, got.i.size());
+    EXPECT_GT(strangers, 10U);
+    EXPECT_GT(p - strangers, 10U);
+}
+
+// Step by step, or all looked at anew: the same contacts and the same bits.
+TEST(Neighbours, WhatPartsIsWhatASearchFromNothingFinds)
+{
+    const Lattice lattice = make_lattice(support::small_packing(400, 3), {});
+    const auto n = lattice.r.size();
+    for (const Geometry geometry : {Geometry::corotational, Geometry::small_displacement}) {
+        Random random(5);
+        std::vector<BondKind> kind = lattice.kind;
+        std::vector<double> pose(8 * n, 0.0);
+        for (std::size_t e = 0; e < n; ++e) pose[8 * e + 7] = 1.0;
+        Neighbours followed(lattice, geometry);
+        followed.follow(pose, kind, 0.0);
+        std::int64_t touching = 0;
+        for (int step = 0; step < 30; ++step) {
+            const double most = 0.02 * lattice.mean_radius;
+            for (std::size_t k = 0; k < 8 * n; ++k)
+                if (k % 8 < 3) pose[k] += random.uniform(-most, most) / std::sqrt(3.0);
+            followed.follow(pose, kind, 2.0 * most);
+            std::vector<std::int32_t> ends;
+            for (std::size_t b = 0; b < kind.size(); ++b)
+                if (random.uniform(0.0, 1.0) < 0.02 && kind[b] == BondKind::beam) {
+                    kind[b] = BondKind::contact_beam;
+                    ends.insert(ends.end(), {lattice.i[b], lattice.j[b]});
+                }
+            followed.part(pose, kind, ends);
+
+            Neighbours anew(lattice, geometry, followed.pressed());
+            anew.follow(pose, kind, 0.0);
+            std::vector<double> expected(6 * n, 0.0), got(6 * n, 0.0);
+            const auto push = [&](const Neighbours& from, std::vector<double>& force) {
+                return add_pairs(from.active(), 0, from.active().size(), 7.0, geometry, lattice.elements(), pose.data(),
+                                 force.data());
+            };
+            ASSERT_EQ(push(followed, got), push(anew, expected)) << step;
+            ASSERT_EQ(got, expected) << step;
+            for (const double f : got) touching += f != 0.0;
+        }
+        EXPECT_GT(touching, 1000);
     }
 }
 
