@@ -50,9 +50,9 @@ PatchScale::PatchScale(const NonLocalMeans& filter)
     const double handy = 32768.0 * std::sqrt(g * c);
     double unit = std::min(handy, cap / (end + noise / h2));
     double of_square = unit / (count * h2);  // of one squared gray level
+    weights.plain = unit == handy && of_square <= 0.5;
     exact = of_square >= 1.0;
     of_square = exact ? 1.0 : std::min(of_square, 0.5);
-    weights.plain = of_square * count * h2 == unit && unit == handy;
     unit = of_square * count * h2;
     const double of_level = exact ? 1.0 : std::sqrt(32768.0 * of_square);
     for (int v = 0; v < 256; ++v) scaled[static_cast<std::size_t>(v)] = static_cast<i16>(std::lround(of_level * v));
