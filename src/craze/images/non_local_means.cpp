@@ -14,7 +14,14 @@ namespace {
 
 // Of a tile, in vectors, rows and planes: what a row of all shifts needs stays in the second-level cache, the sums of a
 // tile in the third.
-constexpr std::int64_t tile_length = 30, tile_ny = 16, tile_nz = 48;
+constexpr std::int64_t tile_length = 30, tile_ny = 16, tile_nz = 32;
+
+// A line of n cut into the fewest parts of at most so many, as equal as can be: threads are done together.
+struct Cuts {
+    Cuts(std::int64_t line, std::int64_t most) : n(line), count((line + most - 1) / most) {}
+    std::int64_t n, count;
+    std::int64_t operator[](std::int64_t part) const { return n * part / count; }
+};
 
 // Each pair of voxels p and p + s is met once, at p, with s in one half of the search window. One of the two lies in
 // the volume, so p may lie up to R before it or behind.
@@ -164,15 +171,8 @@ private:
                 const std::int64_t b = y - (y_low - f_.P), centre = y - f_.P;  // whose neighbourhoods are complete
                 r.column = columns(b);
                 r.column_old = b < n_ ? zeros : columns(b - n_);
-                if (z == z_low) {
-                    std::fill_n(r.column, r.count * column_stride_, std::uint16_t{0});
-                    for (std::int64_t dz = -f_.Pz; dz <= f_.Pz; ++dz) {
-                        look(r, y, z + dz, first_sx, sy, sz);
-                        start_columns(r, scale_);
-                    }
-                } else {
-                    look(r, y, z + f_.Pz, first_sx, sy, sz);
-                }
+                look(r, y, z == z_low ? z - f_.Pz : z + f_.Pz, first_sx, sy, sz);
+                if (z == z_low) start_columns(r, scale_, 2 * f_.Pz + 1, slab_.rows * slab_.stride);
                 const bool complete = centre >= y_low;
                 const bool here = complete && z >= 0 && centre >= 0 && centre < ny;
                 const bool there = complete && z + sz < nz && centre + sy >= 0 && centre + sy < ny;
@@ -247,9 +247,8 @@ void filter_slab(const NonLocalMeans& filter, Shape shape, std::int64_t z0, std:
     Sums sums;
     sums.weighted.assign(static_cast<std::size_t>(frame.shape.voxels()), 0);
     sums.weights.assign(sums.weighted.size(), 0);
-    const std::int64_t columns = (frame.length + tile_length - 1) / tile_length,
-                       step = (frame.length + columns - 1) / columns, down = (ny + tile_ny - 1) / tile_ny,
-                       deep = (nz + tile_nz - 1) / tile_nz, tiles = columns * down * deep;
+    const Cuts along(frame.length, tile_length), down(ny, tile_ny), deep(nz, tile_nz);
+    const std::int64_t tiles = along.count * down.count * deep.count;
     std::vector<std::unique_ptr<Tile>> workers;
     std::vector<Tile*> idle;
     std::mutex lock;
@@ -264,13 +263,10 @@ void filter_slab(const NonLocalMeans& filter, Shape shape, std::int64_t z0, std:
             tile = idle.back();
             idle.pop_back();
         }
-        const std::int64_t i = task % columns * step, y = task / columns % down * tile_ny,
-                           z = task / columns / down * tile_nz;
-        if (i < frame.length) {
-            tile->filter(i, std::min(i + step, frame.length), y, std::min(y + tile_ny, ny), z,
-                         std::min(z + tile_nz, nz));
-            tile->add_to(sums);
-        }
+        const std::int64_t i = task % along.count, y = task / along.count % down.count,
+                           z = task / along.count / down.count;
+        tile->filter(along[i], along[i + 1], down[y], down[y + 1], deep[z], deep[z + 1]);
+        tile->add_to(sums);
         const std::lock_guard guard(lock);
         idle.push_back(tile);
         if (advance) advance(1.0 / static_cast<double>(tiles));

@@ -50,9 +50,9 @@ PatchScale::PatchScale(const NonLocalMeans& filter)
     const double handy = 32768.0 * std::sqrt(g * c);
     double unit = std::min(handy, cap / (end + noise / h2));
     double of_square = unit / (count * h2);  // of one squared gray level
+    weights.plain = unit == handy && of_square <= 0.5;
     exact = of_square >= 1.0;
     of_square = exact ? 1.0 : std::min(of_square, 0.5);
-    weights.plain = of_square * count * h2 == unit && unit == handy;
     unit = of_square * count * h2;
     const double of_level = exact ? 1.0 : std::sqrt(32768.0 * of_square);
     for (int v = 0; v < 256; ++v) scaled[static_cast<std::size_t>(v)] = static_cast<i16>(std::lround(of_level * v));
@@ -68,13 +68,16 @@ PatchScale::PatchScale(const NonLocalMeans& filter)
 
 namespace plain {
 
-void start_columns(const PatchRow& r, const PatchScale& scale)
+void start_columns(const PatchRow& r, const PatchScale& scale, std::int64_t planes, std::int64_t step)
 {
     for (std::int64_t k = 0; k < r.count; ++k) {
         u16* column = r.column + k * r.column_stride;
-        for (std::int64_t i = 0; i < r.columns(); ++i)
-            column[i] =
-                static_cast<u16>(column[i] + square(r.p_new[i], r.ps_new[i + k * lanes], scale.exact, scale.cap));
+        std::fill_n(column, r.columns(), u16{0});
+        for (std::int64_t plane = 0; plane < planes; ++plane) {
+            const i16 *a = r.p_new + plane * step, *b = r.ps_new + plane * step + k * lanes;
+            for (std::int64_t i = 0; i < r.columns(); ++i)
+                column[i] = static_cast<u16>(column[i] + square(a[i], b[i], scale.exact, scale.cap));
+        }
     }
 }
 
@@ -130,9 +133,9 @@ void add_there(const WeightedRows& rows, std::int32_t* to)
 
 }  // namespace plain
 
-void start_columns(const PatchRow& r, const PatchScale& scale)
+void start_columns(const PatchRow& r, const PatchScale& scale, std::int64_t planes, std::int64_t step)
 {
-    return spelled_out() ? avx2::start_columns(r, scale) : plain::start_columns(r, scale);
+    return spelled_out() ? avx2::start_columns(r, scale, planes, step) : plain::start_columns(r, scale, planes, step);
 }
 void weigh_row(const PatchRow& r, const PatchScale& scale, bool columns_done, bool weigh)
 {

@@ -71,8 +71,8 @@ struct PatchRow {
     std::int64_t columns() const { return (length + neighbourhood - 1) * lanes; }
 };
 
-/// column += squares of the plane that enters, for the first planes of a tile.
-void start_columns(const PatchRow& r, const PatchScale& scale);
+/// Columns of a tile's first plane: squares of so many planes, the first at p_new and ps_new, the next `step` further.
+void start_columns(const PatchRow& r, const PatchScale& scale, std::int64_t planes, std::int64_t step);
 /// Brings columns (unless `columns_done`) and bands up to date; if `weigh`, sums the bands along x and makes weights.
 void weigh_row(const PatchRow& r, const PatchScale& scale, bool columns_done, bool weigh);
 
@@ -93,13 +93,13 @@ void add_there(const WeightedRows& rows, std::int32_t* to);
 /// Whether the loops written out for AVX2 run here; they give the bits of the plain ones.
 bool spelled_out();
 namespace plain {
-void start_columns(const PatchRow& r, const PatchScale& scale);
+void start_columns(const PatchRow& r, const PatchScale& scale, std::int64_t planes, std::int64_t step);
 void weigh_row(const PatchRow& r, const PatchScale& scale, bool columns_done, bool weigh);
 void add_here(const WeightedRows& rows, std::int32_t* to);
 void add_there(const WeightedRows& rows, std::int32_t* to);
 }  // namespace plain
 namespace avx2 {
-void start_columns(const PatchRow& r, const PatchScale& scale);
+void start_columns(const PatchRow& r, const PatchScale& scale, std::int64_t planes, std::int64_t step);
 void weigh_row(const PatchRow& r, const PatchScale& scale, bool columns_done, bool weigh);
 void add_here(const WeightedRows& rows, std::int32_t* to);
 void add_there(const WeightedRows& rows, std::int32_t* to);

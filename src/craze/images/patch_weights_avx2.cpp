@@ -167,17 +167,19 @@ bool spelled_out()
 
 namespace avx2 {
 
-AVX2 void start_columns(const PatchRow& r, const PatchScale& scale)
+AVX2 void start_columns(const PatchRow& r, const PatchScale& scale, std::int64_t planes, std::int64_t step)
 {
     const __m256i cap = all(scale.cap);
-    for (std::int64_t k = 0; k < r.count; ++k) {
-        u16* column = r.column + k * r.column_stride;
+    const bool exact = scale.exact;
+    for (std::int64_t k = 0; k < r.count; ++k)
         for (std::int64_t i = 0; i < r.columns(); i += lanes) {
-            const i16 *a = r.p_new + i, *b = r.ps_new + k * lanes + i;
-            put(column + i, _mm256_add_epi16(at(column + i), scale.exact ? square<Squares::exact>(a, b, cap)
-                                                                         : square<Squares::scaled>(a, b, cap)));
+            const i16 *a = r.p_new + i, *b = r.ps_new + i + k * lanes;
+            __m256i sum = _mm256_setzero_si256();
+            for (std::int64_t plane = 0; plane < planes; ++plane, a += step, b += step)
+                sum = _mm256_add_epi16(sum,
+                                       exact ? square<Squares::exact>(a, b, cap) : square<Squares::scaled>(a, b, cap));
+            put(r.column + k * r.column_stride + i, sum);
         }
-    }
 }
 
 void weigh_row(const PatchRow& r, const PatchScale& scale, bool columns_done, bool weigh)
@@ -218,7 +220,10 @@ namespace craze::images {
 bool spelled_out() { return false; }
 
 namespace avx2 {
-void start_columns(const PatchRow& r, const PatchScale& scale) { plain::start_columns(r, scale); }
+void start_columns(const PatchRow& r, const PatchScale& scale, std::int64_t planes, std::int64_t step)
+{
+    plain::start_columns(r, scale, planes, step);
+}
 void weigh_row(const PatchRow& r, const PatchScale& scale, bool columns_done, bool weigh)
 {
     plain::weigh_row(r, scale, columns_done, weigh);

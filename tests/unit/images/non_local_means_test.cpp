@@ -182,12 +182,12 @@ TEST(PatchWeights, AreTheSameBitsSpelledOutOrPlain)
         const auto to = [&](State& s) { return s.sums.data() + R * sums_of_vector; };
         for (const bool columns_done : {true, false}) {
             point(a);
-            avx2::start_columns(r, scale);
+            avx2::start_columns(r, scale, 2, row);
             avx2::weigh_row(r, scale, columns_done, true);
             avx2::add_here(rows(a), to(a));
             avx2::add_there(rows(a), to(a));
             point(b);
-            plain::start_columns(r, scale);
+            plain::start_columns(r, scale, 2, row);
             plain::weigh_row(r, scale, columns_done, true);
             plain::add_here(rows(b), to(b));
             plain::add_there(rows(b), to(b));
