@@ -1,5 +1,6 @@
 #include "craze/images/non_local_means.hpp"
 
+#include "craze/core/aligned.hpp"
 #include "craze/core/parallel.hpp"
 #include "craze/images/patch_weights.hpp"
 

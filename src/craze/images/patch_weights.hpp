@@ -11,8 +11,6 @@
 
 #include <array>
 #include <cstdint>
-#include <new>
-#include <vector>
 
 namespace craze::images {
 
@@ -38,22 +36,6 @@ struct PatchScale {
     } weights;
     std::int32_t one = 0;  ///< the weight of what is alike; the largest there is
 };
-
-/// Allocates whole cache lines.
-template <class T>
-struct CacheLines {
-    using value_type = T;
-    CacheLines() = default;
-    template <class U>
-    CacheLines(const CacheLines<U>&)
-    {
-    }
-    T* allocate(std::size_t n) { return static_cast<T*>(::operator new (n * sizeof(T), std::align_val_t{64})); }
-    void deallocate(T* p, std::size_t) { ::operator delete (p, std::align_val_t{64}); }
-    bool operator==(const CacheLines&) const { return true; }
-};
-template <class T>
-using Aligned = std::vector<T, CacheLines<T>>;
 
 /// One row of voxels p against the rows of p + s, for `count` shifts s that follow each other along x: the pointers are
 /// those of the first shift, the others lie one vector further (levels) or one stride further (sums).

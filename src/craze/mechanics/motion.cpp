@@ -1,5 +1,6 @@
 #include "craze/mechanics/motion.hpp"
 
+#include "craze/core/aligned.hpp"
 #include "craze/core/errors.hpp"
 #include "craze/core/parallel.hpp"
 #include "craze/core/progress.hpp"
@@ -30,6 +31,9 @@ struct ChunkSums {
     double elastic = 0.0, work = 0.0;
 };
 
+/// Where a degree of freedom lies in rows of eight.
+std::size_t in_eight(std::size_t dof) { return dof / 6 * 8 + dof % 6; }
+
 void check_options(const MotionOptions& o)
 {
     if (!(o.step_fraction > 0.0 && o.step_fraction <= 2.0 && o.damping >= 0.0 && std::isfinite(o.damping) &&
@@ -52,7 +56,9 @@ struct Motion::Work {
     Rows6 rows;
     MovingBonds bonds;
     Neighbours neighbours;
-    std::vector<double> pose_next, force;
+    Aligned<double> pose, pose_next;  ///< shape (n, 8); `now` has none
+    Aligned<double> force;            ///< shape (n, 8): force, moment, two unused
+    std::vector<double> force_now;    ///< shape (n, 6), as measured
     bool force_is_current = false, force_is_zero = true;
     double elastic = 0.0;
     std::vector<std::int64_t> imposed;  ///< ascending
@@ -114,10 +120,12 @@ Motion::Work::Work(const Lattice& of, const MotionOptions& with, MotionState fro
         rows.inv_mass[k] = 1.0 / masses.mass[k], rows.inv_moment[k] = 1.0 / masses.moment[k];
         largest_r = std::max(largest_r, lattice.r[k]);
     }
-    now.pose.resize(8 * padded, 0.0), now.velocity.resize(6 * padded, 0.0);
-    for (std::size_t k = lattice.r.size(); k < padded; ++k) now.pose[8 * k + 7] = 1.0;
-    pose_next = now.pose;
-    force.assign(6 * padded, 0.0);
+    pose.assign(now.pose.begin(), now.pose.end());
+    now.pose = {};
+    pose.resize(8 * padded, 0.0), now.velocity.resize(6 * padded, 0.0);
+    for (std::size_t k = lattice.r.size(); k < padded; ++k) pose[8 * k + 7] = 1.0;
+    pose_next = pose;
+    force.assign(8 * padded, 0.0);
     sums.resize(static_cast<std::size_t>(chunks()));
     imposed_first.assign(static_cast<std::size_t>(chunks()) + 1, 0);
     share_out();
@@ -162,7 +170,7 @@ void Motion::Work::follow_neighbours()
 {
     if (std::ssize(shares) != team_size()) share_out();
     if (!options.free_contacts) return;
-    if (neighbours.follow(now.pose, now.kind, moved)) share_pairs();
+    if (neighbours.follow(pose, now.kind, moved)) share_pairs();
     moved = 0.0;
 }
 
@@ -188,9 +196,9 @@ void Motion::Work::border_forces(const Share& share)
         const std::size_t p_0 = p;
         while (bond_chunk(b) == chunk) ++b;
         while (pair_chunk(p) == chunk) ++p;
-        add_bonds(lattice.section, own, b_0, b, now.pose.data(), force.data(), pass);
+        add_bonds(lattice.section, own, b_0, b, pose.data(), force.data(), pass);
         add_border_pairs(pairs, std::span<const std::int32_t>(share.border_pairs).subspan(p_0, p - p_0),
-                         lattice.contact_stiffness, options.geometry, now.pose.data(), force.data());
+                         lattice.contact_stiffness, options.geometry, pose.data(), force.data());
     }
 }
 
@@ -201,9 +209,9 @@ void Motion::Work::forces_of(Share& share, std::int64_t chunk, bool measuring)
         options.geometry, share.begin * chunk_rows, share.end * chunk_rows, options.strength, measuring, 0.0, {}};
     if (measuring) pass.strength = INFINITY;
     pass.bending_share = options.bending_share;
-    add_bonds(lattice.section, bonds, first_bond(chunk), first_bond(chunk + 1), now.pose.data(), force.data(), pass);
+    add_bonds(lattice.section, bonds, first_bond(chunk), first_bond(chunk + 1), pose.data(), force.data(), pass);
     pass.energy += add_pairs(neighbours.active(), pair_first[c], pair_first[c + 1], lattice.contact_stiffness,
-                             options.geometry, share.end * chunk_rows, now.pose.data(), force.data());
+                             options.geometry, share.end * chunk_rows, pose.data(), force.data());
     sums[c].elastic = pass.energy;
     share.broken.insert(share.broken.end(), pass.broken.begin(), pass.broken.end());
 }
@@ -219,17 +227,17 @@ void Motion::Work::step_chunk(std::int64_t chunk)
     double free_of_damping = 0.0;
     for (std::size_t k = first; k < last; ++k) {
         const auto dof = static_cast<std::size_t>(imposed[k]);
-        sum.work -= force[dof] * 0.5 * (now.velocity[dof] + imposed_velocity[k]) * constants.dt;
+        sum.work -= force[in_eight(dof)] * 0.5 * (now.velocity[dof] + imposed_velocity[k]) * constants.dt;
     }
     // The free step would spoil these velocities and count their damping.
     double kept[6 * chunk_rows];
     for (std::size_t k = first; k < last; ++k) {
         const auto dof = static_cast<std::size_t>(imposed[k]);
         kept[k - first] = now.velocity[dof];
-        force[dof] = 0.0;
+        force[in_eight(dof)] = 0.0;
     }
     sum.step = step_rows(constants, rows, chunk * chunk_rows, (chunk + 1) * chunk_rows, force.data(),
-                         now.velocity.data(), now.pose.data(), pose_next.data());
+                         now.velocity.data(), pose.data(), pose_next.data());
     for (std::size_t k = first; k < last; ++k) {
         const auto dof = static_cast<std::size_t>(imposed[k]), e = dof / 6, a = dof % 6;
         const double mid = 0.5 * (kept[k - first] + now.velocity[dof]);
@@ -240,10 +248,10 @@ void Motion::Work::step_chunk(std::int64_t chunk)
         free_of_damping += (a < 3 ? rows.mass[e] : rows.moment[e]) * (mid - affine) * mid;
         now.velocity[dof] = imposed_velocity[k];
         if (k + 1 == last || static_cast<std::size_t>(imposed[k + 1]) / 6 != e)
-            move_row(constants, now.velocity.data() + 6 * e, now.pose.data() + 8 * e, pose_next.data() + 8 * e);
+            move_row(constants, now.velocity.data() + 6 * e, pose.data() + 8 * e, pose_next.data() + 8 * e);
     }
     sum.step.damping -= constants.damping * constants.dt * free_of_damping;
-    std::fill_n(force.begin() + 6 * chunk_rows * chunk, 6 * chunk_rows, 0.0);
+    std::fill_n(force.begin() + 8 * chunk_rows * chunk, 8 * chunk_rows, 0.0);
 }
 
 /// Forces of all; unless measuring, each chunk moves as soon as its forces are complete.
@@ -254,7 +262,7 @@ void Motion::Work::pass(bool measuring)
         share.broken.clear();
         // Chunks that have moved left zeros behind, still warm in the cache.
         if (!force_is_zero)
-            std::fill(force.begin() + 6 * chunk_rows * share.begin, force.begin() + 6 * chunk_rows * share.end, 0.0);
+            std::fill(force.begin() + 8 * chunk_rows * share.begin, force.begin() + 8 * chunk_rows * share.end, 0.0);
         border_forces(share);
         for (std::int64_t chunk = share.begin; chunk < share.end; ++chunk) {
             forces_of(share, chunk, measuring);
@@ -277,7 +285,7 @@ void Motion::Work::break_beams()
             const auto k = static_cast<std::size_t>(b);
             const double* moving[2] = {now.velocity.data() + 6 * std::int64_t{bonds.i[k]},
                                        now.velocity.data() + 6 * std::int64_t{bonds.j[k]}};
-            const BondEnergy before = bond_energy(lattice.section, bonds, b, options.geometry, now.pose.data(), moving);
+            const BondEnergy before = bond_energy(lattice.section, bonds, b, options.geometry, pose.data(), moving);
             const BondEnergy after = bond_energy(lattice.section, bonds, b, options.geometry, pose_next.data(), moving);
             now.fracture_energy +=
                 before.beam - after.contact - 0.5 * constants.dt * (before.beam_power + after.contact_power);
@@ -298,7 +306,7 @@ void Motion::Work::step()
     follow_neighbours();
     pass(false);
     break_beams();
-    now.pose.swap(pose_next);
+    pose.swap(pose_next);
     double fastest = 0.0, all = 0.0;
     for (const ChunkSums& sum : sums) {
         now.damping_energy += sum.step.damping, now.work += sum.work;
@@ -324,6 +332,8 @@ void Motion::Work::measure()
     pass(true);
     elastic = 0.0;
     for (const ChunkSums& sum : sums) elastic += sum.elastic;
+    force_now.resize(6 * lattice.r.size());
+    for (std::size_t k = 0; k < force_now.size(); ++k) force_now[k] = force[in_eight(k)];
     force_is_current = true;
 }
 
@@ -383,7 +393,7 @@ void Motion::set_velocity(std::span<const double> velocity)
     if (velocity.size() != 6 * w.lattice.r.size()) throw InvalidInput("motion: six velocities are needed per element");
     w.measure();
     for (std::size_t k = 0; k < velocity.size(); ++k)
-        w.now.velocity[k] = velocity[k] - 0.5 * w.constants.dt * w.force[k] *
+        w.now.velocity[k] = velocity[k] - 0.5 * w.constants.dt * w.force_now[k] *
                                               (k % 6 < 3 ? w.rows.inv_mass[k / 6] : w.rows.inv_moment[k / 6]);
 }
 
@@ -430,7 +440,7 @@ const std::vector<BrokenBond>& Motion::broken() const { return work_->now.broken
 std::span<const double> Motion::force() const
 {
     work_->measure();
-    return std::span<const double>(work_->force).first(6 * work_->lattice.r.size());
+    return work_->force_now;
 }
 
 std::vector<double> Motion::velocity() const
@@ -447,8 +457,11 @@ std::vector<double> Motion::velocity() const
                                        : 0.0;
         const double inverse = c < 3 ? w.rows.inv_mass[e] : w.rows.inv_moment[e];
         const double off = w.now.velocity[k] - affine, beta = w.constants.local_damping;
-        const double drag = off > 0.0 ? -beta * std::abs(w.force[k]) : off < 0.0 ? beta * std::abs(w.force[k]) : 0.0;
-        out[k] = (w.now.velocity[k] + half * ((w.force[k] + drag) * inverse + alpha * affine)) / (1.0 + half * alpha);
+        const double drag = off > 0.0   ? -beta * std::abs(w.force_now[k])
+                            : off < 0.0 ? beta * std::abs(w.force_now[k])
+                                        : 0.0;
+        out[k] =
+            (w.now.velocity[k] + half * ((w.force_now[k] + drag) * inverse + alpha * affine)) / (1.0 + half * alpha);
     }
     for (const std::int64_t dof : w.imposed)
         out[static_cast<std::size_t>(dof)] = w.now.velocity[static_cast<std::size_t>(dof)];
@@ -464,7 +477,7 @@ Energies Motion::energies() const
     // The work of the half step up to now.
     for (const std::int64_t dof : w.imposed) {
         const auto k = static_cast<std::size_t>(dof);
-        out.work -= w.force[k] * half * w.now.velocity[k];
+        out.work -= w.force_now[k] * half * w.now.velocity[k];
         v[k] = 0.0;
     }
     // The product of the velocities half a step ago and ahead: with it leapfrog keeps the energy of a linear lattice to
@@ -495,7 +508,7 @@ State Motion::state() const
     const Work& w = *work_;
     State out{std::vector<double>(6 * w.lattice.r.size()), w.now.kind};
     for (std::size_t e = 0; e < w.lattice.r.size(); ++e) {
-        const double* row = w.now.pose.data() + 8 * e;
+        const double* row = w.pose.data() + 8 * e;
         double* u = out.u.data() + 6 * e;
         for (int c = 0; c < 3; ++c) u[c] = row[c], u[3 + c] = row[4 + c];
         if (w.options.geometry == Geometry::small_displacement) continue;
@@ -510,7 +523,8 @@ MotionState Motion::stopped() const
 {
     MotionState out = work_->now;
     out.pressed = work_->neighbours.pressed();
-    out.pose.resize(8 * work_->lattice.r.size()), out.velocity.resize(6 * work_->lattice.r.size());
+    out.pose.assign(work_->pose.begin(), work_->pose.begin() + 8 * std::ssize(work_->lattice.r));
+    out.velocity.resize(6 * work_->lattice.r.size());
     return out;
 }
 

@@ -59,9 +59,9 @@ CRAZE_MULTIVERSION StepSums step_rows(const StepConstants& c, const Rows6& rows,
     Lanes damping{}, largest{}, all{};
     for (std::int64_t e = begin; e < end; e += lanes) {
         double* v_row = velocity + 6 * e;
-        const double *f_row = force + 6 * e, *p_row = pose + 8 * e;
+        const double *f_row = force + 8 * e, *p_row = pose + 8 * e;
         const Six v = gather_six(v_row, v_row + 6, v_row + 12, v_row + 18);
-        Six f = gather_six(f_row, f_row + 6, f_row + 12, f_row + 18);
+        Six f = gather_six(f_row, f_row + 8, f_row + 16, f_row + 24);
         const Triple<Lanes> v_affine{c.rate.x * load(rows.x.data() + e), c.rate.y * load(rows.y.data() + e),
                                      c.rate.z * load(rows.z.data() + e)};
         const Kick move{spread(keep), (c.dt * after) * load(rows.inv_mass.data() + e)};

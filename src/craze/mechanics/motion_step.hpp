@@ -32,7 +32,9 @@ struct StepSums {
     double all_speeds = 0.0;  ///< their sum: not finite where one is not
 };
 
-/// Half a step ago -> half a step ahead for velocities, now -> next for poses, rows [begin, end), whole fours.
+/// Half a step ago -> half a step ahead for velocities (n, 6), now -> next for poses (n, 8), rows [begin, end), whole
+/// fours.
+/// @param force  shape (n, 8), the last two unused
 StepSums step_rows(const StepConstants& c, const Rows6& rows, std::int64_t begin, std::int64_t end, const double* force,
                    double* velocity, const double* pose, double* pose_next);
 

@@ -67,7 +67,7 @@ CRAZE_INLINE void add_bonds_of(const BeamSection& section, const MovingBonds& bo
     for (std::int64_t b = begin; b < end; b += lanes) {
         const std::int32_t *i = at.i + b, *j = at.j + b;
         for (int k = 0; k < lanes; ++k)
-            prefetch_row<false>(pose + 8 * j[ahead + k], 8), prefetch_row<true>(force + 6 * j[ahead + k], 6);
+            __builtin_prefetch(pose + 8 * j[ahead + k], 0), __builtin_prefetch(force + 8 * j[ahead + k], 1);
         const Pack d_0{load(at.dx + b), load(at.dy + b), load(at.dz + b)};
         const Lanes inv_length = load(at.inv_length + b), slack = load(at.slack + b);
         const Mask is_beam = slack < 0.0;
@@ -117,12 +117,12 @@ CRAZE_INLINE void add_bonds_of(const BeamSection& section, const MovingBonds& bo
         const Rows row_1 = rows_of({loads.F_1.x, loads.F_1.y, loads.F_1.z, loads.M_1.x, loads.M_1.y, loads.M_1.z});
         const Rows row_2 = rows_of({-loads.F_1.x, -loads.F_1.y, -loads.F_1.z, loads.M_2.x, loads.M_2.y, loads.M_2.z});
         if (count == lanes && i[0] >= low && std::max(std::max(j[0], j[1]), std::max(j[2], j[3])) < limit) [[likely]] {
-            for (int k = 0; k < lanes; ++k) add_row(force + 6 * i[k], row_1, k), add_row(force + 6 * j[k], row_2, k);
+            for (int k = 0; k < lanes; ++k) add_row(force + 8 * i[k], row_1, k), add_row(force + 8 * j[k], row_2, k);
             continue;
         }
         for (int k = 0; k < count; ++k) {
-            if (i[k] >= low) add_row(force + 6 * i[k], row_1, k);
-            if (j[k] < limit) add_row(force + 6 * j[k], row_2, k);
+            if (i[k] >= low) add_row(force + 8 * i[k], row_1, k);
+            if (j[k] < limit) add_row(force + 8 * j[k], row_2, k);
         }
     }
 }
@@ -189,7 +189,7 @@ BondEnergy bond_energy(const BeamSection& section, const MovingBonds& bonds, std
     one.i.assign(bond_padding, 0), one.j.assign(bond_padding, 1);
     one.dx.assign(lanes, bonds.dx[k]), one.dy.assign(lanes, bonds.dy[k]), one.dz.assign(lanes, bonds.dz[k]);
     one.inv_length.assign(lanes, bonds.inv_length[k]);
-    std::vector<double> ends(16), force(12);
+    std::vector<double> ends(16), force(16);
     std::copy_n(pose + 8 * static_cast<std::int64_t>(bonds.i[k]), 8, ends.begin());
     std::copy_n(pose + 8 * static_cast<std::int64_t>(bonds.j[k]), 8, ends.begin() + 8);
     BondEnergy out;
@@ -199,7 +199,7 @@ BondEnergy bond_energy(const BeamSection& section, const MovingBonds& bonds, std
         BondPass pass{geometry, 0, 2, std::numeric_limits<double>::infinity(), true, 0.0, {}};
         add_bonds(section, one, 0, 1, ends.data(), force.data(), pass);
         energy = pass.energy;
-        for (std::size_t c = 0; c < 12; ++c) power += force[c] * velocity[c / 6][c % 6];
+        for (std::size_t c = 0; c < 12; ++c) power += force[c / 6 * 8 + c % 6] * velocity[c / 6][c % 6];
     };
     one.slack.assign(lanes, -1.0);
     as(-1.0, out.beam, out.beam_power);

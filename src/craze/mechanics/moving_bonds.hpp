@@ -34,8 +34,9 @@ struct BondPass {
     double bending_share = 1.0;        ///< MotionOptions::bending_share
 };
 
-/// What bonds [begin, end) add to the rows of `force` (n, 6), from rows of `pose` (n, 8). One function for all bonds:
-/// two would round differently where the compiler fuses products and sums.
+/// What bonds [begin, end) add to the rows of `force` (n, 8: force, moment, two unused), from rows of `pose` (n, 8);
+/// both lie best on whole cache lines. One function for all bonds: two would round differently where the compiler fuses
+/// products and sums.
 void add_bonds(const BeamSection& section, const MovingBonds& bonds, std::int64_t begin, std::int64_t end,
                const double* pose, double* force, BondPass& pass);
 

@@ -159,8 +159,8 @@ double add_pairs(const Pairs& pairs, std::int64_t begin, std::int64_t end, doubl
         if (!(gap < 0.0)) continue;
         const double N = unilateral_force(stiffness, gap);
         energy += 0.5 * N * gap;
-        double *f = force + 6 * static_cast<std::int64_t>(pairs.i[p]),
-               *g = force + 6 * static_cast<std::int64_t>(pairs.j[p]);
+        double *f = force + 8 * static_cast<std::int64_t>(pairs.i[p]),
+               *g = force + 8 * static_cast<std::int64_t>(pairs.j[p]);
         for (int c = 0; c < 3; ++c) f[c] += N * now.t[c];
         if (pairs.j[p] < limit)
             for (int c = 0; c < 3; ++c) g[c] -= N * now.t[c];
@@ -177,7 +177,7 @@ void add_border_pairs(const Pairs& pairs, std::span<const std::int32_t> list, do
         const double gap = now.d - pairs.limit[p];
         if (!(gap < 0.0)) continue;
         const double N = unilateral_force(stiffness, gap);
-        double* g = force + 6 * static_cast<std::int64_t>(pairs.j[p]);
+        double* g = force + 8 * static_cast<std::int64_t>(pairs.j[p]);
         for (int c = 0; c < 3; ++c) g[c] -= N * now.t[c];
     }
 }

@@ -53,7 +53,7 @@ private:
     std::vector<PressedPair> pressed_;
 };
 
-/// Pushes of the pairs in [begin, end) on rows of i, and of j below the limit. Gives their energy, J.
+/// Pushes of the pairs in [begin, end) on rows (of eight) of i, and of j below the limit. Gives their energy, J.
 double add_pairs(const Pairs& pairs, std::int64_t begin, std::int64_t end, double stiffness, Geometry geometry,
                  std::int64_t limit, const double* pose, double* force);
 /// Listed pairs: rows of j alone.

@@ -44,7 +44,7 @@ TEST(Neighbours, PressedTogetherWhenTheyPartStartAtZeroForce)
 {
     const Lattice lattice = bent_triple();
     std::vector<BondKind> kind = lattice.kind;
-    std::vector<double> pose(24, 0.0), force(18, 0.0);
+    std::vector<double> pose(24, 0.0), force(24, 0.0);
     for (const std::size_t e : {0U, 1U, 2U}) pose[8 * e + 7] = 1.0;
     pose[16] = -0.1;
     for (const Geometry geometry : {Geometry::corotational, Geometry::small_displacement}) {
@@ -134,7 +134,7 @@ TEST(Neighbours, WhatPartsIsWhatASearchFromNothingFinds)
 
             Neighbours anew(lattice, geometry, followed.pressed());
             anew.follow(pose, kind, 0.0);
-            std::vector<double> expected(6 * n, 0.0), got(6 * n, 0.0);
+            std::vector<double> expected(8 * n, 0.0), got(8 * n, 0.0);
             const auto push = [&](const Neighbours& from, std::vector<double>& force) {
                 return add_pairs(from.active(), 0, from.active().size(), 7.0, geometry, lattice.elements(), pose.data(),
                                  force.data());
