@@ -36,6 +36,7 @@ Study study_of(const Settings& s)
     study.bending_share = s.bending_share;
     study.cycles = s.cycles;
     study.near_contacts = s.near_contacts;
+    study.threshold = s.threshold;
     return study;
 }
 
@@ -127,6 +128,8 @@ void describe(Schema& schema, Settings& s)
     schema.quantities("openings", s.openings, Dimension::fraction, {0, 100},
                       "all openings times each of these, first seed: UCS/UTS beside K; 0 is closed, none: not run");
     schema.flag("near_contacts", s.near_contacts, "let unbonded neighbours push in states of rest");
+    schema.number("threshold", s.threshold, {1, 255},
+                  "the short way sees cracks as with this gray level S; images find their own");
     schema.texts("fitted", s.fitted, "numbers that the recipe was fitted to");
 }
 

@@ -38,6 +38,7 @@ struct Settings {
     std::vector<double> openings;                        ///< factors for by_opening, first seed; none: not run
     std::vector<double> bending_shares;                  ///< for by_bending_share, first seed; none: not run
     bool near_contacts = false;                          ///< see Study
+    double threshold = Study{}.threshold;                ///< S of the short way, gray level; see Study
     std::vector<std::string> fitted = fitted_numbers();  ///< which numbers the recipe was fitted to
 };
 void describe(Schema& schema, Settings& settings);
