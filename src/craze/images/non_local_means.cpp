@@ -253,7 +253,7 @@ void filter_slab(const NonLocalMeans& filter, Shape shape, std::int64_t z0, std:
     std::vector<std::unique_ptr<Tile>> workers;
     std::vector<Tile*> idle;
     std::mutex lock;
-    parallel_tasks(tiles, [&, ny = ny, nz = nz](std::int64_t task) {
+    parallel_tasks(tiles, [&](std::int64_t task) {
         Tile* tile = nullptr;
         {
             const std::lock_guard guard(lock);
