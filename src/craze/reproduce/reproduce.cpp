@@ -73,6 +73,12 @@ Numbers by_images(const synth::Settings& coating, const Bench& bench, Study stud
     p.domain.r_tilde = bench.calibration.beam.r_tilde;
     if (!study.near_contacts) p.domain.near_gap = 0.0;
     study.thicknesses.clear();  // they say nothing about how a coating was read
+    // The longer curves are for the thicknesses: here they end where the paper's do, in the same steps.
+    if (study.eta > eta_paper) {
+        study.triaxial_points =
+            std::max(3L, std::lround(static_cast<double>(study.triaxial_points) * eta_paper / study.eta));
+        study.eta = eta_paper;
+    }
     study.strengths.resize(std::min<std::size_t>(1, study.strengths.size()));
     study.cycles.clear();
     p.loading = laboratory(study, bench.calibration);
