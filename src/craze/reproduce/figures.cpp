@@ -108,7 +108,9 @@ void add_triaxial(const std::vector<Curve>& curves, std::vector<Figure>& out)
         thickness.id = fmt::format("fig22_{}", q.id);
         thickness.paper = fmt::format("Fig. 22{}", q.part);
         thickness.y.title = q.title;
-        thickness.caption = "Cracks without pores: constant thicknesses beside T2 (\"cracks\") and no cracks.";
+        thickness.caption = "Cracks without pores: constant thicknesses; dashed: T2 (\"cracks\") and no cracks.";
+        for (Series& one : thickness.series)
+            if (one.name == "cracks" || one.name == "dense") one.mark = Mark::dashed;
         out.push_back(std::move(thickness));
     }
 }
