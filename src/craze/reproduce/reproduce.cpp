@@ -8,6 +8,7 @@
 #include "craze/loading/theory.hpp"
 #include "craze/pipeline/pipeline.hpp"
 #include "craze/pipeline/steps.hpp"
+#include "craze/synth/sight.hpp"
 
 #include <fmt/format.h>
 
@@ -159,6 +160,7 @@ Reproduction reproduce(const synth::Settings& recipe, const Settings& settings, 
     synth::Settings coating = recipe;
     coating.shape = shape_of(settings.size, recipe.voxel_size);
     const Study study = study_of(settings);
+    synth::Sight(coating.microscope, coating.voxel_size, study.threshold);  // refuses a threshold before work starts
 
     Reproduction out;
     out.settings = settings;
